@@ -1,0 +1,157 @@
+//! Named physical quantities of a committed state: what the FMU's getters read.
+//!
+//! z-up world and ship axes, SI; conversion to a user's frame happens at the FMI border.
+
+use nalgebra::Vector3;
+
+/// All outputs. Parts that a scene does not have stay at their defaults.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Outputs {
+    /// With a winch.
+    pub winch: WinchOutputs,
+    /// With an anchor.
+    pub anchor: AnchorOutputs,
+    /// One per sheave.
+    pub sheaves: Vec<SheaveOutputs>,
+    /// What cable, winch and sheaves do to the ship.
+    pub ship: ShipOutputs,
+    /// The cable as a whole.
+    pub cable: CableOutputs,
+    /// The lump at the far end.
+    pub body: BodyOutputs,
+    /// The rigid load at the far end.
+    pub load: LoadOutputs,
+    /// Solver statistics.
+    pub solver: SolverOutputs,
+    /// How the run fares.
+    pub status: Status,
+}
+
+/// The winch.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WinchOutputs {
+    /// N + ½EIκ² where the cable leaves the drum, N.
+    pub tension: f64,
+    /// φ, rad.
+    pub angle: f64,
+    /// φ̇, rad/s.
+    pub rate: f64,
+    /// Torque of the cable on the drum about the axis, N·m.
+    pub torque: f64,
+    /// Cable paid out since the start, m.
+    pub payout: f64,
+    /// Force of the cable on the drum, ship axes, N.
+    pub force: Vector3<f64>,
+}
+
+/// The anchor.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct AnchorOutputs {
+    /// Section's axial force, N.
+    pub tension: f64,
+    /// Force of the cable on the anchor, ship axes, N.
+    pub force: Vector3<f64>,
+}
+
+/// A sheave.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SheaveOutputs {
+    /// Force of the cable on the sheave, ship axes, N.
+    pub force: Vector3<f64>,
+    /// Its moment about the sheave's centre, ship axes, N·m.
+    pub moment: Vector3<f64>,
+    /// Magnitude of the resultant, N.
+    pub normal_force: f64,
+    /// Force on each flank, N.
+    pub flank_force: [f64; 2],
+    /// N + ½EIκ² on the winch side, N.
+    pub tension_in: f64,
+    /// The same on the far side, N.
+    pub tension_out: f64,
+    /// The contact arc, rad.
+    pub wrap_angle: f64,
+    /// Where contact starts, rad about the axis from "up".
+    pub contact_begin: f64,
+    /// Where contact ends, rad.
+    pub contact_end: f64,
+    /// How much the cable turns between the free spans, rad.
+    pub turn_angle: f64,
+    /// Greatest line load in the contact arc, N/m.
+    pub line_load_max: f64,
+    /// Least line load in the contact arc, N/m.
+    pub line_load_min: f64,
+    /// Whether anything touches.
+    pub in_contact: bool,
+    /// Whether the cable has climbed out of the groove.
+    pub out_of_groove: bool,
+}
+
+/// The ship.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ShipOutputs {
+    /// Ship axes, N.
+    pub force: Vector3<f64>,
+    /// About the ship frame's origin, ship axes, N·m.
+    pub moment: Vector3<f64>,
+    /// World axes, N.
+    pub force_world: Vector3<f64>,
+}
+
+/// The cable.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CableOutputs {
+    /// N.
+    pub tension_max: f64,
+    /// N.
+    pub tension_min: f64,
+    /// Whether some part carries no tension.
+    pub slack: bool,
+    /// Equally spaced in arc length from the first end to the last, world, m.
+    pub points: Vec<Vector3<f64>>,
+}
+
+/// The body.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BodyOutputs {
+    /// World, m.
+    pub position: Vector3<f64>,
+    /// World, m/s.
+    pub velocity: Vector3<f64>,
+    /// Section's axial force at the body, N.
+    pub tension: f64,
+}
+
+/// The rigid load.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LoadOutputs {
+    /// Centre of gravity, world, m.
+    pub position: Vector3<f64>,
+    /// World, m/s.
+    pub velocity: Vector3<f64>,
+    /// Section's axial force at the attachment, N.
+    pub tension: f64,
+    /// Angle of the link from the vertical, rad.
+    pub angle: f64,
+}
+
+/// Solver statistics since the start of the run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SolverOutputs {
+    /// Accepted sub-steps.
+    pub steps: u64,
+    /// Rejected sub-steps.
+    pub rejected: u64,
+    /// Linear solves (stages of a Rosenbrock method, iterations of a Newton method).
+    pub iterations: u64,
+    /// Defect of the work and energy balance over the work done.
+    pub energy_error: f64,
+}
+
+/// How the run fares.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Status {
+    /// 0 fine, 1 degraded, 2 stopped.
+    pub code: i32,
+    /// Why, in words; empty when fine.
+    pub message: String,
+}

@@ -1,0 +1,2 @@
+//! fairlead's commands.
+fn main() {}
