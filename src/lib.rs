@@ -1,5 +1,8 @@
 //! fairlead: cables over winches and sheaves, as an FMI 2.0 co-simulation FMU.
 
+pub mod cable;
+pub mod linalg;
+pub mod math;
 pub mod outputs;
 pub mod scene;
 pub mod sim;
