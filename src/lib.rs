@@ -1,9 +1,13 @@
 //! fairlead: cables over winches and sheaves, as an FMI 2.0 co-simulation FMU.
 
 pub mod cable;
+pub mod contact;
+pub mod hydro;
 pub mod linalg;
 pub mod math;
 pub mod outputs;
 pub mod scene;
+pub mod ship;
 pub mod sim;
 pub mod variables;
+pub mod winch;

@@ -33,6 +33,8 @@ pub trait Real:
     fn map(self, f: impl Fn(f64) -> f64) -> Self;
     /// A scalar function with two results in every lane.
     fn map2(self, f: impl Fn(f64) -> (f64, f64)) -> (Self, Self);
+    /// A scalar function of two numbers with two results in every lane.
+    fn zip2(self, o: Self, f: impl Fn(f64, f64) -> (f64, f64)) -> (Self, Self);
     /// Sum over the lanes.
     fn sum(self) -> f64;
 }
@@ -69,6 +71,10 @@ impl Real for f64 {
     #[inline(always)]
     fn map2(self, f: impl Fn(f64) -> (f64, f64)) -> (Self, Self) {
         f(self)
+    }
+    #[inline(always)]
+    fn zip2(self, o: Self, f: impl Fn(f64, f64) -> (f64, f64)) -> (Self, Self) {
+        f(self, o)
     }
     #[inline(always)]
     fn sum(self) -> f64 {
@@ -173,6 +179,14 @@ impl<const W: usize> Real for Lanes<W> {
         let (mut a, mut b) = (self, self);
         for l in 0..W {
             (a.0[l], b.0[l]) = f(self.0[l]);
+        }
+        (a, b)
+    }
+    #[inline(always)]
+    fn zip2(self, o: Self, f: impl Fn(f64, f64) -> (f64, f64)) -> (Self, Self) {
+        let (mut a, mut b) = (self, self);
+        for l in 0..W {
+            (a.0[l], b.0[l]) = f(self.0[l], o.0[l]);
         }
         (a, b)
     }
