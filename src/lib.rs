@@ -2,12 +2,16 @@
 
 pub mod cable;
 pub mod contact;
+pub mod equilibrium;
 pub mod hydro;
+pub mod integrator;
+pub mod ledger;
 pub mod linalg;
 pub mod math;
 pub mod outputs;
 pub mod scene;
 pub mod ship;
 pub mod sim;
+pub mod system;
 pub mod variables;
 pub mod winch;

@@ -125,6 +125,12 @@ impl WinchDrive {
         self.state.iter_mut().for_each(&mut *visit);
     }
 
+    /// Back to a state at time `t`.
+    pub fn restore(&mut self, t: f64, state: [f64; 2]) {
+        self.state = state;
+        self.hold(t);
+    }
+
     /// After reading a snapshot at time `t`: the path restarts with the next step.
     pub fn restored(&mut self, t: f64) {
         self.hold(t);
