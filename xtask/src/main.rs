@@ -1,6 +1,13 @@
 //! fairlead's commands.
 
+// Until the demo uses it.
+#[cfg_attr(not(test), allow(dead_code))]
+mod demo_report;
 mod error;
+#[cfg_attr(not(test), allow(dead_code))]
+mod html_report;
+#[cfg_attr(not(test), allow(dead_code))]
+mod plots;
 mod seakeeping;
 mod ship_motion;
 
