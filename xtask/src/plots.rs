@@ -121,7 +121,7 @@ pub struct Panel {
     pub y_label: String,
     /// Lines, drawn in this order.
     pub series: Vec<Series>,
-    /// Marks, drawn under the lines.
+    /// Marks: dots are drawn over the lines, the others under them.
     pub marks: Vec<Mark>,
     /// Height, px (ignored with equal aspect).
     pub height: f64,
@@ -258,13 +258,18 @@ impl Chart {
                         pen.circle((to_x(centre.0), to_y(centre.1)), r, colour.mix(0.12), true);
                         pen.circle((to_x(centre.0), to_y(centre.1)), r, colour.to_rgba(), false);
                     }
-                    Mark::Dot { centre, radius, colour } => pen.circle((to_x(centre.0), to_y(centre.1)), *radius, colour.to_rgba(), true),
+                    Mark::Dot { .. } => {}
                 }
             }
             for series in &panel.series {
                 for run in series.points.split(|(x, y)| !x.is_finite() || !y.is_finite()) {
                     let path: Vec<(f64, f64)> = run.iter().map(|(x, y)| (to_x(*x), to_y(*y))).collect();
                     pen.stroke(&simplified(&path), series);
+                }
+            }
+            for mark in &panel.marks {
+                if let Mark::Dot { centre, radius, colour } = mark {
+                    pen.circle((to_x(centre.0), to_y(centre.1)), *radius, colour.to_rgba(), true);
                 }
             }
             let corners = [(LEFT, top), (right, top), (right, bottom), (LEFT, bottom), (LEFT, top)];
