@@ -1,5 +1,6 @@
 //! Panics end at the C border: caught, never printed, their message kept for the log.
 
+use std::any::Any;
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::ptr;
@@ -32,10 +33,16 @@ fn install_hook() {
             // SAFETY: the pointer is to a live local of `catch` further up this thread's stack, and nobody else uses it now.
             report => unsafe {
                 let place = info.location().map_or_else(String::new, |at| format!(" ({}:{})", at.file(), at.line()));
-                *report = format!("{}{place}", info.payload_as_str().unwrap_or("panic without a message"));
+                *report = format!("{}{place}", text(info.payload()));
             },
         }));
     });
+}
+
+/// What `panic!` was given.
+fn text(payload: &dyn Any) -> &str {
+    let text = payload.downcast_ref::<&str>().copied().or_else(|| payload.downcast_ref::<String>().map(String::as_str));
+    text.unwrap_or("panic without a message")
 }
 
 #[cfg(test)]
