@@ -1,5 +1,23 @@
 //! The one source of truth for fairlead's FMI variables: which there are for a scene of a given shape,
 //! and everything that the model description and the documentation say of them.
+//!
+//! Two declarative tables are the source: [`table::FAMILIES`] has the inputs and outputs, [`keys::KEYS`] what a scene file may say (each
+//! number there is an FMI parameter). From them come the variables, modelDescription.xml, the HTML page and the check of scene files.
+//! This crate knows FMI and names, but no physics and no file format of scenes.
+
+mod document;
+pub mod guid;
+pub mod html;
+pub mod keys;
+mod pattern;
+pub mod scenes;
+pub mod table;
+pub mod units;
+#[cfg(feature = "xml")]
+pub mod xml;
+
+pub use document::{Document, LOG_CATEGORIES, STATUS_CODES};
+pub use table::{Output, variables};
 
 /// FMI base type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -112,6 +130,8 @@ pub struct Variable {
     pub start: Option<Value>,
     /// Unit name; `None` for pure numbers.
     pub unit: Option<&'static str>,
+    /// Type definition, of Reals.
+    pub declared_type: Option<&'static str>,
     /// One sentence.
     pub description: String,
     /// What it stands for.
@@ -125,13 +145,6 @@ pub enum Quantity {
     Parameter(usize),
     /// An input.
     Input(Input),
-    /// An output; the enum of outputs is the table's own (one row each, with array indices resolved).
+    /// An output.
     Output(Output),
-}
-
-/// Output quantities. (To be completed from interface.md by the table's author: one variant per row.)
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Output {
-    /// `winch.tension`.
-    WinchTension,
 }

@@ -1,6 +1,7 @@
 //! The checked scene, in SI units, in z-up world and ship axes whatever frame the file uses.
 
 use nalgebra::Vector3;
+use serde::Deserialize;
 
 /// Everything that one simulation consists of.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,7 +62,8 @@ pub struct Cable {
 }
 
 /// The axial law in compression.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Compression {
     /// EA max(ε, 0): a cable cannot be pushed.
     None,
@@ -70,7 +72,8 @@ pub enum Compression {
 }
 
 /// The pair of strain and curvature measures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Strain {
     /// ε = ‖r_p‖ − 1, κ = ‖r_p × r_pp‖/‖r_p‖² (what data sheets mean).
     Engineering,
@@ -79,7 +82,8 @@ pub enum Strain {
 }
 
 /// Internal damping.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(tag = "model", rename_all = "snake_case")]
 pub enum Damping {
     /// Objective: c_a ε̇ (N·s) and c_b κ̇ (N·m²·s).
     KelvinVoigt {
@@ -115,7 +119,8 @@ pub struct Fluid {
 }
 
 /// The cable's drag law.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(tag = "law", rename_all = "snake_case")]
 pub enum Drag {
     /// Driscoll & Nahon's loading functions (Buckham et al. 2004), normal part amplified by G.
     LoadingFunctions {
@@ -127,8 +132,10 @@ pub enum Drag {
     /// Independent normal and tangential parts.
     CrossFlow {
         /// C_dn on the diameter.
+        #[serde(rename = "cd_normal")]
         normal: Coefficient,
         /// C_dt on the circumference.
+        #[serde(rename = "cd_tangential")]
         tangential: f64,
         /// G, on the normal part.
         amplification: f64,
@@ -136,16 +143,19 @@ pub enum Drag {
 }
 
 /// A drag coefficient.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Coefficient {
-    /// The same at every Reynolds number.
-    Constant(f64),
-    /// (Re, C), ascending in Re, interpolated in the logarithms, constant beyond the ends.
-    Table(Vec<[f64; 2]>),
     /// The circular cylinder in cross-flow.
     Cylinder,
     /// The smooth sphere.
     Sphere,
+    /// The same at every Reynolds number.
+    #[serde(untagged)]
+    Constant(f64),
+    /// (Re, C), ascending in Re, interpolated in the logarithms, constant beyond the ends.
+    #[serde(untagged)]
+    Table(Vec<[f64; 2]>),
 }
 
 /// The ship's motion input.
@@ -157,8 +167,15 @@ pub struct Ship {
     pub ned: bool,
 }
 
+impl Default for Coefficient {
+    /// No drag.
+    fn default() -> Self {
+        Self::Constant(0.0)
+    }
+}
+
 /// Hunt-Crossley line contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 pub struct Contact {
     /// k_N, N/m^(1+n).
     pub stiffness: f64,
@@ -200,7 +217,8 @@ pub struct Winch {
 }
 
 /// Where the winch's set-point comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Setpoint {
     /// The FMU's input.
     External,
@@ -238,15 +256,18 @@ pub struct Sheave {
 }
 
 /// A lump at the far end.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct Body {
     /// kg.
     pub mass: f64,
     /// m³.
+    #[serde(default)]
     pub volume: f64,
     /// m².
+    #[serde(default)]
     pub drag_area: f64,
     /// C_db, on the drag area; Re uses the diameter of a circle of that area.
+    #[serde(default)]
     pub drag_coefficient: Coefficient,
     /// C_mb.
     pub added_mass: f64,
@@ -255,7 +276,7 @@ pub struct Body {
 }
 
 /// A rigid link hanging from the far end.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 pub struct Load {
     /// kg.
     pub mass: f64,
@@ -292,7 +313,7 @@ pub struct ShapePoint {
 }
 
 /// Numerical settings.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 pub struct Solver {
     /// Time integrator.
     pub method: Method,
@@ -307,7 +328,8 @@ pub struct Solver {
 }
 
 /// Time integrators.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Method {
     /// Rosenbrock, order 4(3), L-stable, stiffly accurate (Hairer & Wanner).
     Rodas4,

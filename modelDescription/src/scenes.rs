@@ -1,0 +1,18 @@
+//! The built-in scenes.
+
+/// A scene file compiled in.
+#[derive(Clone, Copy, Debug)]
+pub struct BuiltIn {
+    /// Its name, which is the FMU's too.
+    pub name: &'static str,
+    /// The TOML text.
+    pub text: &'static str,
+}
+
+/// All built-in scenes; the first is what the library simulates without resources.
+pub static SCENES: &[BuiltIn] = &[BuiltIn { name: "flume", text: include_str!("../scenes/flume.toml") }];
+
+/// The built-in scene of that name.
+pub fn named(name: &str) -> Option<&'static BuiltIn> {
+    SCENES.iter().find(|s| s.name == name)
+}

@@ -1,0 +1,159 @@
+//! Rules of a scene file that involve several keys. They run on trees that have other faults too, and skip what is not there.
+
+use super::problem::Problems;
+use super::schema::{get, instances};
+use model_description::keys::{Form, KEYS};
+use std::path::{Component, Path};
+use toml::{Table, Value};
+
+/// How well the regions' lengths must sum to the cable's length.
+const LENGTH_TOLERANCE: f64 = 1e-9;
+
+/// Finds inconsistencies in a normalized tree.
+pub(super) fn check(tree: &Table, problems: &mut Problems) {
+    parts(tree, problems);
+    stiffness(tree, problems);
+    mesh(tree, problems);
+    directions(tree, problems);
+    ascending_tables(tree, problems);
+    viscosity(tree, problems);
+    setpoint(tree, problems);
+    initial(tree, problems);
+    if let (Some(least), Some(greatest)) = (real(tree, "solver.step_min"), real(tree, "solver.step_max"))
+        && least > greatest
+    {
+        problems.add_once("solver.step_min", format!("found {least}; expected at most solver.step_max = {greatest} s"));
+    }
+    if let (Some(gravity), Some(inertia)) = (real(tree, "load.length_gravity"), real(tree, "load.length_inertia"))
+        && gravity > inertia
+    {
+        let message = format!("found {inertia}; a radius of gyration about the attachment is at least load.length_gravity = {gravity} m");
+        problems.add_once("load.length_inertia", message);
+    }
+}
+
+fn real(tree: &Table, name: &str) -> Option<f64> {
+    get(tree, name)?.as_float()
+}
+
+fn string<'a>(tree: &'a Table, name: &str) -> Option<&'a str> {
+    get(tree, name)?.as_str()
+}
+
+fn has(tree: &Table, name: &str) -> bool {
+    get(tree, name).is_some()
+}
+
+fn parts(tree: &Table, problems: &mut Problems) {
+    match (has(tree, "winch"), has(tree, "anchor")) {
+        (true, true) => problems.add("anchor", "found beside [winch]; expected exactly one of [winch] and [anchor]"),
+        (false, false) => problems.add("winch", "missing; expected exactly one of [winch] and [anchor], which hold the cable's first end"),
+        _ => {}
+    }
+    let ends: Vec<_> = ["body", "load", "far_end"].into_iter().filter(|name| has(tree, name)).collect();
+    if let [first, others @ ..] = ends.as_slice() {
+        for other in others {
+            problems.add(*other, format!("found beside [{first}]; expected at most one of [body], [load] and [far_end] at the cable's far end"));
+        }
+    }
+}
+
+fn stiffness(tree: &Table, problems: &mut Problems) {
+    if !has(tree, "cable") {
+        return;
+    }
+    for (own, alternative, unit) in [("cable.EA", "cable.E", "a number > 0 in N"), ("cable.EI", "cable.I", "a number >= 0 in N.m2")] {
+        match (has(tree, own), has(tree, alternative)) {
+            (true, true) => problems.add_once(own, format!("found beside {alternative}; expected one of the two")),
+            (false, false) => problems.add(own, format!("missing; expected {unit}, or {alternative} instead")),
+            _ => {}
+        }
+    }
+}
+
+fn mesh(tree: &Table, problems: &mut Problems) {
+    let Some(regions) = get(tree, "mesh.regions") else {
+        if has(tree, "mesh") && !has(tree, "mesh.elements") {
+            problems.add("mesh.elements", "missing; expected a whole number >= 1, or mesh.regions instead");
+        }
+        return;
+    };
+    if has(tree, "mesh.elements") {
+        problems.add("mesh.regions", "found beside mesh.elements; expected one of the two");
+    }
+    let lengths = regions.as_array().map(|a| a.iter().map(|r| r.get("length").and_then(Value::as_float)));
+    let sum: Option<f64> = lengths.and_then(Iterator::sum);
+    if let (Some(sum), Some(length)) = (sum, real(tree, "cable.length"))
+        && (sum - length).abs() > LENGTH_TOLERANCE * length
+    {
+        problems.add_once("mesh.regions", format!("the lengths sum to {sum}; expected cable.length = {length} m"));
+    }
+}
+
+/// The values of all keys, with their dotted names.
+fn values(tree: &Table) -> impl Iterator<Item = (Form, String, &Value)> {
+    KEYS.iter().flat_map(move |key| {
+        instances(tree, key.group()).into_iter().filter_map(|(path, table)| {
+            let name = key.local_name();
+            Some((key.form, super::schema::join(&path, name), get(table, name)?))
+        })
+    })
+}
+
+fn directions(tree: &Table, problems: &mut Problems) {
+    for (form, name, value) in values(tree) {
+        let zero = value.as_array().is_some_and(|a| a.iter().all(|v| v.as_float() == Some(0.0)));
+        if matches!(form, Form::Vector(t) if t.name == "Direction") && zero {
+            problems.add_once(&name, "found a zero vector; expected a direction [x, y, z] of any other length");
+        }
+    }
+}
+
+fn ascending_tables(tree: &Table, problems: &mut Problems) {
+    for (form, name, value) in values(tree) {
+        let first = value.as_array().and_then(|rows| rows.iter().map(|row| row.get(0)?.as_float()).collect::<Option<Vec<_>>>());
+        let (Some(first), Form::Coefficient | Form::Rows(_)) = (first, form) else { continue };
+        let ascends = first.windows(2).all(|w| w[0] < w[1]);
+        // A profile may be written from the surface down as well.
+        let descends = matches!(form, Form::Rows(_)) && first.windows(2).all(|w| w[0] > w[1]);
+        if !ascends && !descends {
+            let order = if matches!(form, Form::Rows(_)) { "ascend or descend" } else { "ascend" };
+            problems.add_once(&name, format!("the first column is {first:?}; expected it to {order} strictly"));
+        }
+    }
+}
+
+fn viscosity(tree: &Table, problems: &mut Problems) {
+    if !has(tree, "fluid") || has(tree, "fluid.viscosity") {
+        return;
+    }
+    let of_reynolds = |(form, name, value): (Form, String, &Value)| (matches!(form, Form::Coefficient) && !value.is_float()).then_some(name);
+    if let Some(name) = values(tree).find_map(of_reynolds) {
+        problems.add("fluid.viscosity", format!("missing; {name} depends on the Reynolds number, so a number > 0 in Pa.s is expected"));
+    }
+}
+
+fn setpoint(tree: &Table, problems: &mut Problems) {
+    let Some(source) = string(tree, "winch.setpoint") else { return };
+    let needs: &[&str] = match source {
+        "simplified_sheave" | "sheave" => &["ship"],
+        "waterline" => &["ship", "fluid"],
+        _ => &[],
+    };
+    for table in needs.iter().filter(|t| !has(tree, t)) {
+        problems.add_once("winch.setpoint", format!("found \"{source}\", which needs a table [{table}]; expected one, or \"external\""));
+    }
+}
+
+fn initial(tree: &Table, problems: &mut Problems) {
+    if string(tree, "initial.state") == Some("released") && !has(tree, "body") && !has(tree, "load") {
+        problems.add_once("initial.state", "found \"released\", which needs a [body] or a [load] to be released");
+    }
+    if let Some(file) = string(tree, "initial.file") {
+        let inside = Path::new(file).components().all(|c| matches!(c, Component::Normal(_)));
+        if file.is_empty() || !inside || file.contains(['\\', ':']) || file == "scene.toml" {
+            let message = format!("found \"{file}\"; expected a file beside or below the scene file, as a relative path with forward slashes");
+            problems.add_once("initial.file", message);
+        }
+    }
+}
