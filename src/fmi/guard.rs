@@ -121,3 +121,42 @@ pub(super) unsafe fn take_back(component: Component) {
 pub(super) fn or_null<T>(result: Result<*mut T, String>) -> *mut T {
     result.unwrap_or(ptr::null_mut())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::logging::Log;
+    use super::*;
+    use crate::variables::Model;
+
+    fn instance() -> Component {
+        give_out(Instance::new(Model::load(None).unwrap(), Log::new(None, c"x".into(), false)))
+    }
+
+    #[test]
+    fn a_panic_poisons_the_instance_until_it_is_reset() {
+        let c = instance();
+        // SAFETY: an instance from `give_out`, freed once at the end.
+        unsafe {
+            assert_eq!(guard(c, Function::SetupExperiment, |_| panic!("broken")), Status::Error);
+            assert_eq!(guard(c, Function::SetupExperiment, |_| Ok(())), Status::Error);
+            assert_eq!(guard(c, Function::Reset, Instance::reset), Status::Ok);
+            assert_eq!(guard(c, Function::SetupExperiment, |_| Ok(())), Status::Ok);
+            take_back(c);
+        }
+    }
+
+    #[test]
+    fn an_instance_at_work_admits_nobody() {
+        let c = instance();
+        // SAFETY: as above.
+        unsafe {
+            let inner = |_: &mut Instance| {
+                take_back(c);
+                assert_eq!(guard(c, Function::Reset, Instance::reset), Status::Error);
+                Ok(())
+            };
+            assert_eq!(guard(c, Function::SetupExperiment, inner), Status::Ok);
+            take_back(c);
+        }
+    }
+}

@@ -235,7 +235,7 @@ impl Instance {
             return Err(error(format!("the communication step size is {step}; expected a positive number")));
         }
         let near = |a: f64, b: f64| (a - b).abs() <= STEP_TOLERANCE * step + TIME_TOLERANCE * a.abs().max(b.abs());
-        if !near(point, self.time) {
+        if !(point.is_finite() && near(point, self.time)) {
             return Err(error(format!("the communication point is {point} s; expected the present time {} s", self.time)));
         }
         let target = point + step;
