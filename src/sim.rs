@@ -1,7 +1,13 @@
 //! The only door to the physics: a scene goes in, committed states come out.
 
-use crate::outputs::Outputs;
-use crate::scene::Scene;
+use crate::equilibrium;
+use crate::integrator::{Problem, Rodas4, Trial};
+use crate::ledger::Ledger;
+use crate::linalg::BlockTridiagonal;
+use crate::outputs::{Outputs, observe};
+use crate::scene::{Initial, Scene};
+use crate::system::{FirstEnd, Matrices, Ramp, System};
+use nalgebra::Vector3;
 use thiserror::Error;
 
 /// One scalar input over a communication step.
@@ -42,42 +48,363 @@ pub enum SimError {
     State(String),
 }
 
+/// Velocity error tolerated per tension error asked for: the estimate is of the lower-order formula, so the solution is better than it says.
+const STRICTNESS: f64 = 3.0;
+/// Energy defect over the work done from which a run counts as degraded.
+const DEGRADED: f64 = 1e-2;
+
 /// A simulation of one scene.
 #[derive(Clone)]
 pub struct Simulation {
+    scene: Scene,
+    system: System,
+    method: Rodas4,
+    state: State,
+    backup: State,
+    work: Work,
     outputs: Outputs,
+}
+
+/// Everything that the next step depends on, beside the drives.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct State {
     time: f64,
+    /// Positions relative to the first node, their rates and accelerations, six per node.
+    u: Vec<f64>,
+    w: Vec<f64>,
+    a: Vec<f64>,
+    /// Sub-step that the error control would take next, s.
+    step: f64,
+    /// Tension by which errors are measured, N.
+    tension: f64,
+    /// Drum angle at the start, rad.
+    first_angle: f64,
+    counts: [u64; 3],
+    ledger: Ledger,
+}
+
+/// Buffers, sized once.
+#[derive(Clone, Debug, Default)]
+struct Work {
+    matrices: Matrices,
+    force: Vec<f64>,
+    mid: [Vec<f64>; 3],
+    mass: BlockTridiagonal,
 }
 
 impl Simulation {
     /// Allocates everything that the scene needs. Nothing is solved yet.
-    pub fn new(_scene: &Scene) -> Result<Self, SimError> {
-        Ok(Self { outputs: Outputs::default(), time: 0.0 })
+    ///
+    /// # Errors
+    /// [`SimError::Start`] when the scene asks for something that this version cannot do.
+    pub fn new(scene: &Scene) -> Result<Self, SimError> {
+        let missing = [
+            (!scene.sheaves.is_empty(), "[[sheave]]"),
+            (scene.load.is_some(), "[load]"),
+            (scene.far_end.is_some(), "[far_end]"),
+            (matches!(scene.initial, Initial::Released(_)), "[initial] state = \"released\""),
+            (scene.winch.as_ref().is_some_and(|w| w.setpoint != crate::scene::Setpoint::External), "[winch] setpoint other than \"external\""),
+        ];
+        if let Some((_, what)) = missing.iter().find(|(present, _)| *present) {
+            return Err(SimError::Start(format!("{what} is not supported by this version")));
+        }
+        let system = System::new(scene);
+        let (n, nodes) = (system.size(), system.nodes());
+        let zeros = || vec![0.0; n];
+        let state = State { u: zeros(), w: zeros(), a: zeros(), ..State::default() };
+        Ok(Self {
+            scene: scene.clone(),
+            method: Rodas4::new(n),
+            backup: state.clone(),
+            state,
+            work: Work {
+                matrices: Matrices::zeros(nodes),
+                force: zeros(),
+                mid: [zeros(), zeros(), zeros()],
+                mass: BlockTridiagonal::zeros(nodes),
+            },
+            outputs: Outputs {
+                cable: crate::outputs::CableOutputs { points: vec![Vector3::zeros(); scene.points], ..Default::default() },
+                ..Outputs::default()
+            },
+            system,
+        })
     }
 
-    /// Finds the start state under the first inputs and evaluates the outputs there. May be called again (inputs changed before the first step).
+    /// Finds the start state under the first inputs and evaluates the outputs there. May be called again (inputs changed before the first
+    /// step). The cable starts with the velocity of its first end: a ship under way tows it in its steady shape.
     ///
     /// # Errors
     /// [`SimError::Start`] when there is no such state.
-    pub fn initialize(&mut self, time: f64, _inputs: &Inputs) -> Result<(), SimError> {
-        self.time = time;
+    pub fn initialize(&mut self, time: f64, inputs: &Inputs) -> Result<(), SimError> {
+        let scene = &self.scene;
+        let system = &mut self.system;
+        system.begin = time;
+        system.ship.start(time, &inputs.ship);
+        system.ship.advance(time, 1.0, &inputs.ship);
+        system.current = std::array::from_fn(|i| Ramp::from(&inputs.current[i]));
+        system.body_force = std::array::from_fn(|i| Ramp::from(&inputs.body_force[i]));
+        let mut angle = 0.0;
+        if let (FirstEnd::Winch { drive, .. }, Some(winch)) = (&mut system.first, &scene.winch) {
+            angle = winch.angle;
+            drive.start(time, angle);
+        }
+        let n = system.size();
+        let state = &mut self.state;
+        state.time = time;
+        state.first_angle = angle;
+        state.counts = [0; 3];
+        state.w.fill(0.0);
+        state.a.fill(0.0);
+        let mass = system.cable_mass() + system.lump.mass;
+        let weight = (mass * scene.gravity).max(1e-9 * scene.cable.ea);
+        match &scene.initial {
+            Initial::Equilibrium => {
+                let down = Vector3::new(0.0, 0.0, if net_weight(scene) >= 0.0 { -1.0 } else { 1.0 });
+                state.u.copy_from_slice(&equilibrium::lay_out(system, time, &down));
+                equilibrium::solve(system, time, &mut state.u, weight).map_err(SimError::Start)?;
+            }
+            Initial::Straight(direction) => {
+                for (x, s) in state.u.chunks_exact_mut(6).zip(&system.arc) {
+                    for c in 0..3 {
+                        (x[c], x[3 + c]) = (s * direction[c], direction[c]);
+                    }
+                }
+            }
+            Initial::Shape(points) => shape(system, time, points, &mut state.u, &mut state.w).map_err(SimError::Start)?,
+            Initial::Released(_) => return Err(SimError::Start("[initial] state = \"released\" is not supported by this version".into())),
+        }
+        debug_assert_eq!(n, state.u.len());
+        state.tension = weight;
+        state.step = self.scene.solver.step_max;
+        self.system.set_tolerance(STRICTNESS * self.scene.solver.tolerance, self.state.tension);
+        self.settle();
+        self.observe();
+        // Errors are measured by the greater of weight and first tension.
+        self.state.tension = weight.max(self.outputs.cable.tension_max);
+        self.system.set_tolerance(STRICTNESS * self.scene.solver.tolerance, self.state.tension);
+        self.state.step = self.first_step();
+        self.state.ledger = Ledger::start(&self.system.tally, 1e-6 * self.state.tension * self.scene.cable.diameter);
+        self.outputs.solver = Default::default();
+        self.outputs.status = Default::default();
         Ok(())
+    }
+
+    /// A first sub-step on the scale of the fastest axial wave through the cable.
+    fn first_step(&self) -> f64 {
+        let cable = &self.scene.cable;
+        let wave = cable.length * (cable.mass_per_length / cable.ea).sqrt();
+        wave.clamp(10.0 * self.scene.solver.step_min, self.scene.solver.step_max)
+    }
+
+    /// Accelerations and forces of the present state.
+    fn settle(&mut self) {
+        let (s, k) = (&mut self.state, &mut self.work);
+        self.system.linearize(s.time, &s.u, &s.w, &s.a, &mut k.matrices, &mut k.force);
+        k.mass.clone_from(&k.matrices.mass);
+        // The mass matrix is positive definite, so this cannot fail.
+        if k.mass.factor().is_ok() {
+            s.a.copy_from_slice(&k.force);
+            k.mass.solve(&mut s.a);
+        }
+    }
+
+    /// Outputs of the present state, whose accelerations are known.
+    fn observe(&mut self) {
+        let s = &self.state;
+        self.system.balance(s.time, &s.u, &s.w, &s.a, &mut self.work.force);
+        let env = self.system.environment(s.time);
+        observe(&self.system, &env, &s.u, &s.w, &self.work.force, &mut self.outputs);
+        if let FirstEnd::Winch { geometry, .. } = &self.system.first {
+            self.outputs.winch.payout = geometry.sense * (self.outputs.winch.angle - s.first_angle) * geometry.radius;
+        }
+        let solver = &mut self.outputs.solver;
+        [solver.steps, solver.rejected, solver.iterations] = s.counts;
+        solver.energy_error = s.ledger.error();
+        let status = &mut self.outputs.status;
+        if solver.energy_error > DEGRADED {
+            status.code = 1;
+            status.message = format!(
+                "energy and work disagree by {:.1e} of the work done; a smaller solver.tolerance or more elements would help",
+                solver.energy_error
+            );
+        } else {
+            status.code = 0;
+            status.message.clear();
+        }
     }
 
     /// Integrates to `time` (s) exactly, with `inputs` as of the present time.
     ///
     /// # Errors
     /// [`SimError::Step`]; the state is then as it was before the call.
-    pub fn step_to(&mut self, time: f64, _inputs: &Inputs) -> Result<(), SimError> {
-        self.time = time;
+    pub fn step_to(&mut self, time: f64, inputs: &Inputs) -> Result<(), SimError> {
+        let begin = self.state.time;
+        if !(time > begin) || !time.is_finite() {
+            return Err(SimError::Step(format!("the end {time} s must lie after the present time {begin} s")));
+        }
+        self.backup.copy(&self.state);
+        let (ship, winch) = (self.system.ship.clone(), self.winch_state());
+        self.drive(begin, time - begin, inputs);
+        match self.integrate(time) {
+            Ok(()) => {
+                self.system.ship.commit(time);
+                if let FirstEnd::Winch { drive, .. } = &mut self.system.first {
+                    drive.commit(time);
+                }
+                self.settle();
+                self.complete_ledger();
+                self.observe();
+                Ok(())
+            }
+            Err(message) => {
+                self.state.copy(&self.backup);
+                self.system.ship = ship;
+                if let (FirstEnd::Winch { drive, .. }, Some(x)) = (&mut self.system.first, winch) {
+                    drive.restore(begin, x);
+                }
+                self.outputs.status.code = 2;
+                self.outputs.status.message.clone_from(&message);
+                Err(SimError::Step(message))
+            }
+        }
+    }
+
+    fn winch_state(&self) -> Option<[f64; 2]> {
+        match &self.system.first {
+            FirstEnd::Winch { drive, .. } => Some(drive.state()),
+            FirstEnd::Anchor(_) => None,
+        }
+    }
+
+    /// Lays the paths of everything prescribed over the next `h` seconds.
+    fn drive(&mut self, t: f64, h: f64, inputs: &Inputs) {
+        let system = &mut self.system;
+        system.begin = t;
+        system.ship.advance(t, h, &inputs.ship);
+        system.current = std::array::from_fn(|i| Ramp::from(&inputs.current[i]));
+        system.body_force = std::array::from_fn(|i| Ramp::from(&inputs.body_force[i]));
+        if let (FirstEnd::Winch { drive, geometry, .. }, Some(winch)) = (&mut system.first, &self.scene.winch) {
+            let c = &inputs.winch;
+            let mut path = [c.value, c.first.unwrap_or(0.0), c.second.unwrap_or(0.0)];
+            if winch.payout_command {
+                let k = geometry.sense / geometry.radius;
+                path = [self.state.first_angle + k * path[0], k * path[1], k * path[2]];
+            }
+            drive.advance(t, h, &path);
+        }
+    }
+
+    fn integrate(&mut self, end: f64) -> Result<(), String> {
+        let solver = self.scene.solver;
+        let mut taken = 0;
+        while self.state.time < end {
+            let s = &mut self.state;
+            let k = &mut self.work;
+            let remaining = end - s.time;
+            // Equal parts of what remains, none longer than the error control wants (a hundredth more saves a sliver).
+            let parts = (remaining / (1.01 * s.step.min(solver.step_max))).ceil().max(1.0);
+            let mut h = remaining / parts;
+            self.system.linearize(s.time, &s.u, &s.w, &s.a, &mut k.matrices, &mut k.force);
+            s.ledger.reach(&self.system.tally, &s.w, &k.force);
+            loop {
+                let trial = self.method.attempt(&mut self.system, s.time, h, [&s.u, &s.w, &s.a], &k.matrices, &k.force);
+                s.counts[2] += 6;
+                let (error, why) = match trial {
+                    Trial::Error(e) if e.is_finite() => (e, "the estimated error stays too large"),
+                    Trial::Error(_) => (f64::INFINITY, "the solution is not finite"),
+                    Trial::Singular(_) => (f64::INFINITY, "the system's matrix is singular"),
+                };
+                let factor = (0.9 * error.powf(-1.0 / Rodas4::ESTIMATE_ORDER as f64)).clamp(0.2, 5.0);
+                if error <= 1.0 {
+                    let wanted = h * factor;
+                    // A step cut short by the communication point says nothing against longer ones.
+                    s.step = if h < s.step { wanted.max(s.step) } else { wanted };
+                    break;
+                }
+                s.counts[1] += 1;
+                h *= factor.min(0.9);
+                s.step = h;
+                if h < solver.step_min {
+                    let node = match trial {
+                        Trial::Singular(row) => row,
+                        Trial::Error(_) => self.worst_node(),
+                    };
+                    return Err(self.failure(end, node, why));
+                }
+            }
+            taken += 1;
+            let last = h >= remaining;
+            let to = if last { end } else { s.time + h };
+            let [u, w, a] = self.method.state();
+            // Work by Simpson's rule, the state at mid-step from the cubic through both ends.
+            let [mid_u, mid_w, mid_f] = &mut k.mid;
+            for i in 0..u.len() {
+                mid_u[i] = 0.5 * (s.u[i] + u[i]) + h / 8.0 * (s.w[i] - w[i]);
+                mid_w[i] = 1.5 / h * (u[i] - s.u[i]) - 0.25 * (s.w[i] + w[i]);
+            }
+            s.u.copy_from_slice(u);
+            s.w.copy_from_slice(w);
+            if self.system.mass_varies() {
+                s.a.copy_from_slice(a);
+            }
+            self.system.force(s.time + 0.5 * h, mid_u, mid_w, None, mid_f);
+            s.ledger.pass(h, &self.system.tally, mid_w, mid_f);
+            s.time = to;
+            s.counts[0] += 1;
+            if taken >= solver.steps_max && s.time < end {
+                let node = self.worst_node();
+                return Err(self.failure(end, node, "solver.steps_max sub-steps were not enough"));
+            }
+        }
         Ok(())
+    }
+
+    fn complete_ledger(&mut self) {
+        let s = &mut self.state;
+        s.ledger.reach(&self.system.tally, &s.w, &self.work.force);
+    }
+
+    /// The node with the greatest velocity error.
+    fn worst_node(&self) -> usize {
+        let size = |e: &[f64]| e[..3].iter().map(|x| x * x).sum::<f64>();
+        let nodes = self.method.error().chunks_exact(6).enumerate();
+        nodes.fold((0, -1.0), |best, (i, e)| if !(size(e) <= best.1) { (i, size(e)) } else { best }).0
+    }
+
+    fn failure(&self, end: f64, node: usize, why: &str) -> String {
+        let s = &self.state;
+        let p: Vec<String> = (0..3).map(|c| format!("{:.4}", s.u[6 * node + c] + self.system.environment(s.time).base[c].0[0])).collect();
+        format!(
+            "at t = {:.6} s on the way to {end:.6} s, {:.4} m along the cable (node {node}, at ({}) m): {why} at sub-steps of {:.1e} s. \
+             Try: smoother inputs (velocities beside poses), a shorter communication step, a softer contact stiffness, more damping, \
+             or a larger solver.tolerance",
+            s.time,
+            self.system.arc[node],
+            p.join(", "),
+            s.step,
+        )
     }
 
     /// Takes over the tunable parameters of a changed scene between two steps.
     ///
     /// # Errors
-    /// [`SimError::State`] when something else than a tunable parameter differs.
-    pub fn retune(&mut self, _scene: &Scene) -> Result<(), SimError> {
+    /// [`SimError::State`] when the number of elements differs.
+    pub fn retune(&mut self, scene: &Scene) -> Result<(), SimError> {
+        if scene.elements.len() != self.scene.elements.len() {
+            return Err(SimError::State("the number of elements cannot change during a run".into()));
+        }
+        self.scene = scene.clone();
+        let fresh = System::new(scene);
+        self.system.chain = fresh.chain;
+        self.system.lump = fresh.lump;
+        if let (FirstEnd::Winch { drive, contact, .. }, FirstEnd::Winch { contact: new, .. }, Some(winch)) =
+            (&mut self.system.first, &fresh.first, &scene.winch)
+        {
+            drive.retune(winch);
+            *contact = *new;
+        }
+        self.system.set_tolerance(STRICTNESS * scene.solver.tolerance, self.state.tension);
         Ok(())
     }
 
@@ -88,12 +415,17 @@ impl Simulation {
 
     /// Time of the last committed state, s.
     pub fn time(&self) -> f64 {
-        self.time
+        self.state.time
+    }
+
+    /// Positions relative to the first node and slopes, six per node, m and 1.
+    pub fn shape(&self) -> &[f64] {
+        &self.state.u
     }
 
     /// Appends everything that the next step depends on: little-endian, no pointers, complete (a restored run is bit-identical).
     pub fn write_state(&self, bytes: &mut Vec<u8>) {
-        bytes.extend_from_slice(&self.time.to_le_bytes());
+        self.clone().visit(&mut |x| bytes.extend_from_slice(&x.to_le_bytes()));
     }
 
     /// Takes over a state written by [`Self::write_state`] of a simulation of the same scene; leaves `self` untouched on error.
@@ -101,8 +433,102 @@ impl Simulation {
     /// # Errors
     /// [`SimError::State`] when the bytes do not fit this scene.
     pub fn read_state(&mut self, bytes: &[u8]) -> Result<(), SimError> {
-        let b: [u8; 8] = bytes.try_into().map_err(|_| SimError::State("wrong length".into()))?;
-        self.time = f64::from_le_bytes(b);
+        let mut expected = 0;
+        self.visit(&mut |_| expected += 8);
+        if bytes.len() != expected {
+            return Err(SimError::State(format!("{} bytes do not fit this scene, which needs {expected}", bytes.len())));
+        }
+        let mut numbers = bytes.chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().unwrap_or_default()));
+        self.visit(&mut |x| *x = numbers.next().unwrap_or(f64::NAN));
+        let t = self.state.time;
+        if let FirstEnd::Winch { drive, .. } = &mut self.system.first {
+            drive.restored(t);
+        }
+        self.outputs.status.message.clear();
+        self.system.set_tolerance(STRICTNESS * self.scene.solver.tolerance, self.state.tension);
         Ok(())
     }
+
+    /// Every number of the state and of the outputs, in a fixed order.
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        let s = &mut self.state;
+        for x in [&mut s.time, &mut s.step, &mut s.tension, &mut s.first_angle] {
+            visit(x);
+        }
+        s.u.iter_mut().chain(&mut s.w).chain(&mut s.a).for_each(&mut *visit);
+        for c in &mut s.counts {
+            let mut x = *c as f64;
+            visit(&mut x);
+            *c = x as u64;
+        }
+        s.ledger.visit(visit);
+        self.system.ship.visit(visit);
+        if let FirstEnd::Winch { drive, .. } = &mut self.system.first {
+            drive.visit(visit);
+        }
+        self.outputs.visit(visit);
+    }
+}
+
+impl State {
+    /// Without allocation.
+    fn copy(&mut self, o: &Self) {
+        self.u.copy_from_slice(&o.u);
+        self.w.copy_from_slice(&o.w);
+        self.a.copy_from_slice(&o.a);
+        (self.time, self.step, self.tension, self.first_angle) = (o.time, o.step, o.tension, o.first_angle);
+        (self.counts, self.ledger) = (o.counts, o.ledger);
+    }
+}
+
+/// Weight less buoyancy of cable and body when all is under water, N.
+fn net_weight(scene: &Scene) -> f64 {
+    let (cable, body) = (&scene.cable, scene.body.as_ref());
+    let mass = cable.mass_per_length * cable.length + body.map_or(0.0, |b| b.mass);
+    let volume = std::f64::consts::PI * cable.diameter.powi(2) / 4.0 * cable.length + body.map_or(0.0, |b| b.volume);
+    mass - scene.fluid.as_ref().map_or(0.0, |f| f.density * volume)
+}
+
+/// Start from given points: positions and velocities interpolated linearly in between unless tangents make the cubic known.
+fn shape(system: &System, t: f64, points: &[crate::scene::ShapePoint], u: &mut [f64], w: &mut [f64]) -> Result<(), String> {
+    let env = system.environment(t);
+    let base = Vector3::from(env.base.map(|j| j.0[0]));
+    let base_velocity = Vector3::from(env.base.map(|j| j.0[1]));
+    let (first, last) = (points.first(), points.last());
+    let (Some(first), Some(last)) = (first, last) else { return Err("initial.file has no points".into()) };
+    let end = system.arc[system.arc.len() - 1];
+    let slack = 1e-6 * end;
+    if first.s > slack || last.s < end - slack {
+        return Err(format!("initial.file covers arc lengths {} to {} m, the cable 0 to {end} m", first.s, last.s));
+    }
+    let gap = (first.position - base).norm();
+    if gap > 1e-3 * end {
+        return Err(format!("initial.file starts {gap:.3e} m away from the cable's first end at ({:.4}, {:.4}, {:.4}) m", base.x, base.y, base.z));
+    }
+    // Tangents not given: central differences over the neighbours.
+    let tangent = |i: usize| {
+        points[i].tangent.unwrap_or_else(|| {
+            let (a, b) = (&points[i.saturating_sub(1)], &points[(i + 1).min(points.len() - 1)]);
+            (b.position - a.position) / (b.s - a.s)
+        })
+    };
+    for (node, &s) in system.arc.iter().enumerate() {
+        let i = points[1..points.len() - 1].partition_point(|p| p.s <= s);
+        let (a, b) = (&points[i], &points[(i + 1).min(points.len() - 1)]);
+        let l = b.s - a.s;
+        let x = if l > 0.0 { ((s - a.s) / l).clamp(0.0, 1.0) } else { 0.0 };
+        let (h, d) = (crate::cable::shape::value(x, l), crate::cable::shape::slope(x, 1.0 / l));
+        let (ta, tb) = (tangent(i), tangent((i + 1).min(points.len() - 1)));
+        let at = |h: &[f64; 4]| a.position * h[0] + ta * h[1] + b.position * h[2] + tb * h[3];
+        let (position, slope) = (at(&h) - first.position, at(&d));
+        let velocity = a.velocity * (1.0 - x) + b.velocity * x - base_velocity;
+        let rate = (b.velocity - a.velocity) / l;
+        for c in 0..3 {
+            (u[6 * node + c], u[6 * node + 3 + c]) = (position[c], slope[c]);
+            (w[6 * node + c], w[6 * node + 3 + c]) = (velocity[c], rate[c]);
+        }
+    }
+    u[..3].fill(0.0);
+    w[..3].fill(0.0);
+    Ok(())
 }

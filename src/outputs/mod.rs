@@ -2,6 +2,10 @@
 //!
 //! z-up world and ship axes, SI; conversion to a user's frame happens at the FMI border.
 
+mod observe;
+
+pub use observe::observe;
+
 use nalgebra::Vector3;
 
 /// All outputs. Parts that a scene does not have stay at their defaults.
@@ -154,4 +158,66 @@ pub struct Status {
     pub code: i32,
     /// Why, in words; empty when fine.
     pub message: String,
+}
+
+impl Outputs {
+    /// Every number in a fixed order, for snapshots (the status message is not kept).
+    pub fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        fn vector(v: &mut Vector3<f64>, visit: &mut dyn FnMut(&mut f64)) {
+            v.iter_mut().for_each(visit);
+        }
+        fn flag(b: &mut bool, visit: &mut dyn FnMut(&mut f64)) {
+            let mut x = f64::from(u8::from(*b));
+            visit(&mut x);
+            *b = x != 0.0;
+        }
+        fn count(n: &mut u64, visit: &mut dyn FnMut(&mut f64)) {
+            let mut x = *n as f64;
+            visit(&mut x);
+            *n = x as u64;
+        }
+        let w = &mut self.winch;
+        for x in [&mut w.tension, &mut w.angle, &mut w.rate, &mut w.torque, &mut w.payout] {
+            visit(x);
+        }
+        vector(&mut w.force, visit);
+        visit(&mut self.anchor.tension);
+        vector(&mut self.anchor.force, visit);
+        for s in &mut self.sheaves {
+            vector(&mut s.force, visit);
+            vector(&mut s.moment, visit);
+            let [f1, f2] = &mut s.flank_force;
+            for x in [&mut s.normal_force, f1, f2, &mut s.tension_in, &mut s.tension_out, &mut s.wrap_angle, &mut s.contact_begin] {
+                visit(x);
+            }
+            for x in [&mut s.contact_end, &mut s.turn_angle, &mut s.line_load_max, &mut s.line_load_min] {
+                visit(x);
+            }
+            flag(&mut s.in_contact, visit);
+            flag(&mut s.out_of_groove, visit);
+        }
+        for v in [&mut self.ship.force, &mut self.ship.moment, &mut self.ship.force_world] {
+            vector(v, visit);
+        }
+        visit(&mut self.cable.tension_max);
+        visit(&mut self.cable.tension_min);
+        flag(&mut self.cable.slack, visit);
+        for p in &mut self.cable.points {
+            vector(p, visit);
+        }
+        vector(&mut self.body.position, visit);
+        vector(&mut self.body.velocity, visit);
+        visit(&mut self.body.tension);
+        vector(&mut self.load.position, visit);
+        vector(&mut self.load.velocity, visit);
+        visit(&mut self.load.tension);
+        visit(&mut self.load.angle);
+        for n in [&mut self.solver.steps, &mut self.solver.rejected, &mut self.solver.iterations] {
+            count(n, visit);
+        }
+        visit(&mut self.solver.energy_error);
+        let mut code = f64::from(self.status.code);
+        visit(&mut code);
+        self.status.code = code as i32;
+    }
 }

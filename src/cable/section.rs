@@ -1,0 +1,375 @@
+//! The section's laws: from r_p, r_pp and their rates to the resisting forces conjugate to them, with exact derivatives.
+//!
+//! | measure | `engineering` | `green` |
+//! |---|---|---|
+//! | ε | ‖r_p‖ − 1 | ½(r_p·r_p − 1) |
+//! | κ | ‖r_p × r_pp‖ / ‖r_p‖² | ‖r_p × r_pp‖ / ‖r_p‖³ |
+//!
+//! Elastic energy per length ½EA ε² + ½EI κ² (the first with max(ε, 0) for a cable that cannot be pushed). Damping: either
+//! `kelvin_voigt`, axial c_a ε̇ and bending c_b β̇ with β = √(κ² + κ0²) (objective: both are scalars of the shape, so a rigid motion gives
+//! no force; κ0 only keeps the direction defined where the cable is straight), or the thesis's `gradient_rate`, c ṙ_p.
+
+use crate::math::lanes::{Mat3, Real, Vec3, add_identity, add_outer, axpy, dot, mat_vec, scale, zero_mat};
+use crate::scene::{Cable, Compression, Damping, Strain};
+
+/// Constants of a section, ready for the kernel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Section {
+    /// EA, N.
+    pub ea: f64,
+    /// EI, N·m².
+    pub ei: f64,
+    /// Green strain and geometric curvature instead of the engineering pair.
+    pub green: bool,
+    /// No axial stiffness in compression.
+    pub tension_only: bool,
+    /// c_a, N·s.
+    pub axial_damping: f64,
+    /// Whether c_a acts while ε ≤ 0 in a tension-only section.
+    pub damp_in_slack: bool,
+    /// c_b, N·m²·s.
+    pub bending_damping: f64,
+    /// κ0, 1/m.
+    pub straight_curvature: f64,
+    /// c of the gradient-rate damping, N·s.
+    pub gradient_damping: f64,
+}
+
+/// κ0 d: the curvature below which bending damping fades, as a fraction of 1/d.
+const STRAIGHT: f64 = 1e-3;
+
+impl Section {
+    /// From a checked scene.
+    pub fn new(cable: &Cable) -> Self {
+        let (axial_damping, bending_damping, damp_in_slack, gradient_damping) = match cable.damping {
+            Damping::KelvinVoigt { axial, bending, in_slack } => (axial, bending, in_slack, 0.0),
+            Damping::GradientRate { coefficient } => (0.0, 0.0, true, coefficient),
+        };
+        Self {
+            ea: cable.ea,
+            ei: cable.ei,
+            green: cable.strain == Strain::Green,
+            tension_only: cable.compression == Compression::None,
+            axial_damping,
+            damp_in_slack,
+            bending_damping,
+            straight_curvature: STRAIGHT / cable.diameter,
+            gradient_damping,
+        }
+    }
+
+    /// Whether any rate enters the forces.
+    pub fn is_damped(&self) -> bool {
+        self.axial_damping > 0.0 || self.bending_damping > 0.0 || self.gradient_damping > 0.0
+    }
+
+    /// Whether r_pp enters the forces.
+    pub fn bends(&self) -> bool {
+        self.ei > 0.0 || self.bending_damping > 0.0
+    }
+}
+
+/// Shape and rate of shape at a point of the cable.
+#[derive(Clone, Copy, Debug)]
+pub struct Strains<T> {
+    /// r_p.
+    pub p: Vec3<T>,
+    /// r_pp, 1/m.
+    pub pp: Vec3<T>,
+    /// ṙ_p, 1/s.
+    pub vp: Vec3<T>,
+    /// ṙ_pp, 1/(m·s).
+    pub vpp: Vec3<T>,
+}
+
+/// Resisting forces per length and their derivatives. `k` are derivatives by (r_p, r_pp), `d` by their rates.
+#[derive(Clone, Copy, Debug)]
+pub struct Resistance<T> {
+    /// Conjugate to r_p, N.
+    pub n: Vec3<T>,
+    /// Conjugate to r_pp, N·m.
+    pub m: Vec3<T>,
+    /// ∂n/∂r_p.
+    pub k_pp: Mat3<T>,
+    /// ∂n/∂r_pp.
+    pub k_pq: Mat3<T>,
+    /// ∂m/∂r_p.
+    pub k_qp: Mat3<T>,
+    /// ∂m/∂r_pp.
+    pub k_qq: Mat3<T>,
+    /// ∂n/∂ṙ_p.
+    pub d_pp: Mat3<T>,
+    /// ∂n/∂ṙ_pp (and the transpose of ∂m/∂ṙ_p).
+    pub d_pq: Mat3<T>,
+    /// ∂m/∂ṙ_pp.
+    pub d_qq: Mat3<T>,
+    /// Elastic energy per length, J/m.
+    pub energy: T,
+    /// Rate of the elastic energy per length, W/m.
+    pub power: T,
+}
+
+impl<T: Real> Resistance<T> {
+    #[inline(always)]
+    fn zero() -> Self {
+        let (z, o) = ([T::splat(0.0); 3], zero_mat());
+        let s = T::splat(0.0);
+        Self { n: z, m: z, k_pp: o, k_pq: o, k_qp: o, k_qq: o, d_pp: o, d_pq: o, d_qq: o, energy: s, power: s }
+    }
+}
+
+impl Section {
+    /// Axial strain.
+    pub fn strain(&self, p: &Vec3<f64>) -> f64 {
+        let l2 = dot(p, p);
+        if self.green { 0.5 * (l2 - 1.0) } else { l2.sqrt() - 1.0 }
+    }
+
+    /// κ².
+    pub fn curvature_squared(&self, p: &Vec3<f64>, pp: &Vec3<f64>) -> f64 {
+        let (l2, b) = (dot(p, p), dot(p, pp));
+        let g = l2 * dot(pp, pp) - b * b;
+        g / if self.green { l2 * l2 * l2 } else { l2 * l2 }
+    }
+
+    /// The section's axial force N (model.md, "Which tension"): EA ε + c_a ε̇, for the Green pair (EA ε + c_a ε̇)‖r_p‖ − EI κ²/‖r_p‖, N.
+    pub fn axial_force(&self, s: &Strains<f64>) -> f64 {
+        let l = dot(&s.p, &s.p).sqrt();
+        let eps = self.strain(&s.p);
+        let rate = dot(&s.p, &s.vp) / if self.green { 1.0 } else { l };
+        let taut = !self.tension_only || eps > 0.0;
+        let n = if taut { self.ea * eps } else { 0.0 } + if taut || self.damp_in_slack { self.axial_damping * rate } else { 0.0 };
+        if self.green { n * l - self.ei * self.curvature_squared(&s.p, &s.pp) / l } else { n }
+    }
+
+    /// Resisting forces at a point; derivatives only with `TANGENT`.
+    #[inline(always)]
+    pub fn resistance<T: Real, const TANGENT: bool>(&self, s: &Strains<T>) -> Resistance<T> {
+        let mut out = Resistance::zero();
+        self.axial::<T, TANGENT>(s, &mut out);
+        if self.bends() {
+            self.bending::<T, TANGENT>(s, &mut out);
+        }
+        if self.gradient_damping > 0.0 {
+            out.n = axpy(&out.n, T::splat(self.gradient_damping), &s.vp);
+            if TANGENT {
+                add_identity(&mut out.d_pp, T::splat(self.gradient_damping));
+            }
+        }
+        out
+    }
+
+    /// n = N g with g = ∂ε/∂r_p.
+    #[inline(always)]
+    fn axial<T: Real, const TANGENT: bool>(&self, s: &Strains<T>, out: &mut Resistance<T>) {
+        let one = T::splat(1.0);
+        let l2 = dot(&s.p, &s.p);
+        // g = r_p/λ or r_p; ∂g/∂r_p = c (I − b g gᵀ).
+        let (eps, g, c, b) = if self.green {
+            ((l2 - one) * 0.5, s.p, one, T::splat(0.0))
+        } else {
+            let l = l2.sqrt();
+            let i = one / l;
+            (l - one, scale(i, &s.p), i, one)
+        };
+        let taut = if self.tension_only { eps.step() } else { one };
+        let damped = if self.damp_in_slack { one } else { taut };
+        let rate = dot(&g, &s.vp);
+        let (ea, ca) = (taut * self.ea, damped * self.axial_damping);
+        let elastic = ea * eps;
+        let n = elastic + ca * rate;
+        out.n = scale(n, &g);
+        out.energy += elastic * eps * 0.5;
+        out.power += elastic * rate;
+        if TANGENT {
+            // K = g ⊗ (EA g + c_a ∂ε̇/∂r_p) + N ∂g/∂r_p,   ∂ε̇/∂r_p = ∂g/∂r_p ṙ_p.
+            let turn = axpy(&scale(c, &s.vp), -(c * b * rate), &g);
+            let row = axpy(&scale(ea, &g), ca, &turn);
+            add_outer(&mut out.k_pp, one, &g, &row);
+            add_identity(&mut out.k_pp, n * c);
+            add_outer(&mut out.k_pp, -(n * c * b), &g, &g);
+            add_outer(&mut out.d_pp, ca, &g, &g);
+        }
+    }
+
+    /// With κ² = G λ^(−2m), G = ‖r_p × r_pp‖², and (e2, e1) = ½ ∂κ²/∂(r_p, r_pp): n = B e2, m = B e1, B = EI + c_b β̇/β.
+    #[inline(always)]
+    fn bending<T: Real, const TANGENT: bool>(&self, s: &Strains<T>, out: &mut Resistance<T>) {
+        let m = if self.green { 3.0 } else { 2.0 };
+        let one = T::splat(1.0);
+        let (l, a, b) = (dot(&s.p, &s.p), dot(&s.pp, &s.pp), dot(&s.p, &s.pp));
+        let i = one / l;
+        let pw = if self.green { i * i * i } else { i * i };
+        let k2 = (l * a - b * b).at_least(0.0) * pw; // κ²
+        // d1 = l r_pp − b r_p, d2 = a r_p − b r_pp.
+        let d1 = axpy(&scale(l, &s.pp), -b, &s.p);
+        let d2 = axpy(&scale(a, &s.p), -b, &s.pp);
+        let e1 = scale(pw, &d1);
+        let e2 = axpy(&scale(pw, &d2), -(k2 * i * m), &s.p);
+        let rate = dot(&e1, &s.vpp) + dot(&e2, &s.vp); // κκ̇ = ββ̇
+        let damped = self.bending_damping > 0.0;
+        let ib2 = if damped { one / (k2 + T::splat(self.straight_curvature * self.straight_curvature)) } else { T::splat(0.0) };
+        let cb = ib2 * self.bending_damping; // c_b/β²
+        let stiffness = T::splat(self.ei) + cb * rate;
+        out.n = axpy(&out.n, stiffness, &e2);
+        out.m = scale(stiffness, &e1);
+        out.energy += k2 * (0.5 * self.ei);
+        out.power += rate * self.ei;
+        if TANGENT {
+            // H = ∂(e2, e1)/∂(r_p, r_pp); h12 = ∂e1/∂r_p, its transpose ∂e2/∂r_pp.
+            let mut h11 = zero_mat();
+            add_identity(&mut h11, pw * l);
+            add_outer(&mut h11, -pw, &s.p, &s.p);
+            let mut h12 = zero_mat();
+            add_identity(&mut h12, -(pw * b));
+            add_outer(&mut h12, pw + pw, &s.pp, &s.p);
+            add_outer(&mut h12, -pw, &s.p, &s.pp);
+            let f = pw * i * (2.0 * m);
+            add_outer(&mut h12, -f, &d1, &s.p);
+            let mut h22 = zero_mat();
+            add_identity(&mut h22, pw * a - k2 * i * m);
+            add_outer(&mut h22, -pw, &s.pp, &s.pp);
+            add_outer(&mut h22, -f, &d2, &s.p);
+            add_outer(&mut h22, -f, &s.p, &d2);
+            add_outer(&mut h22, k2 * i * i * (2.0 * m * (m + 1.0)), &s.p, &s.p);
+            for r in 0..3 {
+                for c in 0..3 {
+                    out.k_pp[r][c] += stiffness * h22[r][c];
+                    out.k_pq[r][c] += stiffness * h12[c][r];
+                    out.k_qp[r][c] += stiffness * h12[r][c];
+                    out.k_qq[r][c] += stiffness * h11[r][c];
+                }
+            }
+            if damped {
+                // ∂B/∂x = c_b (H ẋ/β² − 2 rate e/β⁴),   ∂B/∂ẋ = c_b e/β².
+                let h12t_vpp: Vec3<T> = std::array::from_fn(|c| h12[0][c] * s.vpp[0] + h12[1][c] * s.vpp[1] + h12[2][c] * s.vpp[2]);
+                let hv2 = axpy(&mat_vec(&h22, &s.vp), one, &h12t_vpp);
+                let hv1 = axpy(&mat_vec(&h12, &s.vp), one, &mat_vec(&h11, &s.vpp));
+                let back = -(rate * ib2 * 2.0);
+                let b2 = scale(cb, &axpy(&hv2, back, &e2));
+                let b1 = scale(cb, &axpy(&hv1, back, &e1));
+                add_outer(&mut out.k_pp, one, &e2, &b2);
+                add_outer(&mut out.k_pq, one, &e2, &b1);
+                add_outer(&mut out.k_qp, one, &e1, &b2);
+                add_outer(&mut out.k_qq, one, &e1, &b1);
+                add_outer(&mut out.d_pp, cb, &e2, &e2);
+                add_outer(&mut out.d_pq, cb, &e2, &e1);
+                add_outer(&mut out.d_qq, cb, &e1, &e1);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sections() -> Vec<Section> {
+        let base = Section {
+            ea: 3.0e3,
+            ei: 0.7,
+            green: false,
+            tension_only: false,
+            axial_damping: 5.0,
+            damp_in_slack: true,
+            bending_damping: 0.2,
+            straight_curvature: 0.05,
+            gradient_damping: 0.0,
+        };
+        vec![
+            base,
+            Section { green: true, ..base },
+            Section { tension_only: true, damp_in_slack: false, ..base },
+            Section { axial_damping: 0.0, bending_damping: 0.0, gradient_damping: 0.3, ..base },
+        ]
+    }
+
+    fn state() -> Strains<f64> {
+        Strains { p: [0.9, 0.35, -0.4], pp: [1.1, -2.0, 0.7], vp: [0.3, -0.8, 0.5], vpp: [-1.2, 0.4, 2.2] }
+    }
+
+    fn forces(s: &Section, x: &[f64; 12]) -> ([f64; 6], f64) {
+        let g = |i: usize| [x[i], x[i + 1], x[i + 2]];
+        let r = s.resistance::<f64, false>(&Strains { p: g(0), pp: g(3), vp: g(6), vpp: g(9) });
+        ([r.n[0], r.n[1], r.n[2], r.m[0], r.m[1], r.m[2]], r.energy)
+    }
+
+    fn flat(s: &Strains<f64>) -> [f64; 12] {
+        let mut x = [0.0; 12];
+        for (i, v) in [s.p, s.pp, s.vp, s.vpp].iter().enumerate() {
+            x[3 * i..3 * i + 3].copy_from_slice(v);
+        }
+        x
+    }
+
+    #[test]
+    fn exact_tangent_matches_central_differences() {
+        for s in sections() {
+            let x = flat(&state());
+            let r = s.resistance::<f64, true>(&state());
+            let scale = forces(&s, &x).0.iter().fold(0.0f64, |a, f| a.max(f.abs()));
+            for j in 0..12 {
+                let h = 1e-6;
+                let (mut up, mut down) = (x, x);
+                up[j] += h;
+                down[j] -= h;
+                let (fu, fd) = (forces(&s, &up).0, forces(&s, &down).0);
+                for i in 0..6 {
+                    let (a, b) = (i % 3, j % 3);
+                    let exact = match (i / 3, j / 3) {
+                        (0, 0) => r.k_pp[a][b],
+                        (0, 1) => r.k_pq[a][b],
+                        (1, 0) => r.k_qp[a][b],
+                        (1, 1) => r.k_qq[a][b],
+                        (0, 2) => r.d_pp[a][b],
+                        (0, 3) => r.d_pq[a][b],
+                        (1, 2) => r.d_pq[b][a],
+                        _ => r.d_qq[a][b],
+                    };
+                    let d = (fu[i] - fd[i]) / (2.0 * h);
+                    // Rounding eps/h times the force, and h² truncation.
+                    assert!((d - exact).abs() < 3e-9 * scale, "{s:?} ({i}, {j}): {d} against {exact}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn exact_elastic_force_is_the_energy_gradient() {
+        for s in sections() {
+            let s = Section { axial_damping: 0.0, bending_damping: 0.0, gradient_damping: 0.0, ..s };
+            let x = flat(&state());
+            let f = forces(&s, &x).0;
+            for j in 0..6 {
+                let h = 1e-6;
+                let (mut up, mut down) = (x, x);
+                up[j] += h;
+                down[j] -= h;
+                let d = (forces(&s, &up).1 - forces(&s, &down).1) / (2.0 * h);
+                assert!((d - f[j]).abs() < 1e-6 * f[j].abs().max(1.0), "{s:?} {j}: {d} against {}", f[j]);
+            }
+        }
+    }
+
+    #[test]
+    fn exact_rigid_rotation_meets_no_kelvin_voigt_force() {
+        let w = [0.7, -1.9, 0.4];
+        let cross = |a: [f64; 3]| [w[1] * a[2] - w[2] * a[1], w[2] * a[0] - w[0] * a[2], w[0] * a[1] - w[1] * a[0]];
+        for s in sections().into_iter().take(3) {
+            let still = Strains { vp: [0.0; 3], vpp: [0.0; 3], ..state() };
+            let turning = Strains { vp: cross(still.p), vpp: cross(still.pp), ..still };
+            let (a, b) = (forces(&s, &flat(&still)).0, forces(&s, &flat(&turning)).0);
+            for i in 0..6 {
+                assert!((a[i] - b[i]).abs() < 1e-12 * a[i].abs().max(1.0), "{s:?} {i}"); // rounding
+            }
+        }
+    }
+
+    #[test]
+    fn exact_slack_section_has_no_axial_force() {
+        let s = Section { bending_damping: 0.0, ei: 0.0, ..sections()[2] };
+        let x = Strains { p: [0.5, 0.2, -0.4], ..state() };
+        assert_eq!(forces(&s, &flat(&x)).0, [0.0; 6]);
+        assert_eq!(s.axial_force(&x), 0.0);
+    }
+}

@@ -1,0 +1,105 @@
+//! The static start: pseudo-transient continuation from a laid-out shape.
+//!
+//! Each iteration is one linearly implicit Euler step from rest, (M + Δ D + Δ² K) δ = Δ² F(u): a heavily damped motion for small Δ, Newton's
+//! method for large Δ (C. T. Kelley & D. E. Keyes, SIAM J. Numer. Anal. 35 (1998) 508-523). Δ grows as the residual falls. The mass term keeps
+//! slack and unbent parts regular.
+
+mod layout;
+
+pub use layout::lay_out;
+
+use crate::integrator::Problem;
+use crate::system::{Matrices, System};
+
+/// Iterations before giving up.
+const ITERATIONS: usize = 4000;
+/// Greatest change of a slope per iteration; larger ones are scaled back.
+const TURN: f64 = 0.25;
+/// Residual over the load at which the state counts as an equilibrium.
+const TOLERANCE: f64 = 1e-10;
+/// Factor by which the residual may grow in an accepted iteration.
+const GROWTH: f64 = 2.0;
+
+/// Moves `u` (relative to the first node) to the equilibrium at time `t` under the boundary's present velocity.
+///
+/// # Errors
+/// What remained unbalanced, where, and what to try.
+pub fn solve(system: &mut System, t: f64, u: &mut [f64], load: f64) -> Result<usize, String> {
+    system.frozen = true;
+    let outcome = iterate(system, t, u, load);
+    system.frozen = false;
+    outcome
+}
+
+fn iterate(system: &mut System, t: f64, u: &mut [f64], load: f64) -> Result<usize, String> {
+    let n = u.len();
+    let zero = vec![0.0; n];
+    let mut m = Matrices::zeros(n / 6);
+    let (mut f, mut trial, mut trial_f, mut step) = (zero.clone(), zero.clone(), zero.clone(), zero.clone());
+    let mut a = m.stiffness.clone();
+    let shortest = system.chain.lengths.iter().copied().fold(f64::INFINITY, f64::min);
+    // Slope rows are moments: over an element length they are forces.
+    let size = |f: &[f64]| {
+        f.chunks_exact(6)
+            .map(|r| (r[..3].iter().map(|x| x * x).sum::<f64>() + r[3..].iter().map(|x| x * x).sum::<f64>() / (shortest * shortest)).sqrt())
+            .fold(0.0, f64::max)
+    };
+    // Rounding of the internal forces bounds what can be asked for.
+    let small = (TOLERANCE * load).max(1e-14 * system.chain.section.ea);
+    let mut delta = 1e-2;
+    let mut worst = f64::INFINITY;
+    for iteration in 0..ITERATIONS {
+        system.linearize(t, u, &zero, &zero, &mut m, &mut f);
+        worst = size(&f);
+        if !worst.is_finite() {
+            return Err("the forces of the start shape are not finite".into());
+        }
+        let mut accepted = false;
+        for _ in 0..40 {
+            a.combine(&m.mass, &m.damping, &m.stiffness, delta);
+            let good = a.factor().is_ok();
+            if good {
+                for (s, f) in step.iter_mut().zip(&f) {
+                    *s = delta * delta * f;
+                }
+                a.solve(&mut step);
+                let turn = step.chunks_exact(6).flat_map(|s| &s[3..]).fold(0.0f64, |m, x| m.max(x.abs()));
+                let scale = (TURN / turn).min(1.0);
+                if turn.is_finite() {
+                    for ((t, u), s) in trial.iter_mut().zip(&*u).zip(&step) {
+                        *t = u + scale * s;
+                    }
+                    system.force(t, &trial, &zero, None, &mut trial_f);
+                    let after = size(&trial_f);
+                    if after <= small || after <= GROWTH * worst {
+                        u.copy_from_slice(&trial);
+                        let ratio = (worst / after).clamp(0.7, 2.0);
+                        delta = (delta * if scale < 1.0 { 1.05 } else { 2.0 * ratio }).min(1e7);
+                        let moved = step.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+                        if after <= small && (moved < 1e-7 || worst <= small) {
+                            return Ok(iteration + 1);
+                        }
+                        accepted = true;
+                        break;
+                    }
+                }
+            }
+            delta *= 0.2;
+            if delta < 1e-12 {
+                break;
+            }
+        }
+        if !accepted {
+            break;
+        }
+    }
+    let (node, _) = f.chunks_exact(6).enumerate().fold((0, 0.0), |best, (i, r)| {
+        let s: f64 = r[..3].iter().map(|x| x * x).sum();
+        if s > best.1 { (i, s) } else { best }
+    });
+    Err(format!(
+        "no static equilibrium found: {worst:.3e} N remain unbalanced (tolerated: {small:.1e} N), most at {:.4} m along the cable; \
+         try [initial] state = \"straight\" or \"shape\", more elements there, or a softer contact stiffness",
+        system.arc[node]
+    ))
+}

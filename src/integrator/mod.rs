@@ -1,0 +1,37 @@
+//! Time integration of M(u) ü = F(t, u, u̇) with block-tridiagonal matrices; knows no cable.
+
+mod rodas4;
+
+pub use rodas4::Rodas4;
+
+use crate::system::Matrices;
+
+/// A second-order system.
+pub trait Problem {
+    /// Number of unknowns, six per node.
+    fn size(&self) -> usize;
+
+    /// f = F(t, u, w) − M(u) a; without `a` just F. Zero in prescribed rows.
+    fn force(&mut self, t: f64, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64]);
+
+    /// f = F(t, u, w), and M, D, K of F − M(u) a at this state. Prescribed rows of M are rows of the identity, of D and K zero.
+    fn linearize(&mut self, t: f64, u: &[f64], w: &[f64], a: &[f64], matrices: &mut Matrices, f: &mut [f64]);
+
+    /// ∂F/∂t at fixed u and w into `f`, given F there; `scale` is the time over which it matters. False if it vanishes.
+    fn time_derivative(&mut self, t: f64, scale: f64, u: &[f64], w: &[f64], force: &[f64], f: &mut [f64]) -> bool;
+
+    /// Whether M depends on u.
+    fn mass_varies(&self) -> bool;
+
+    /// Size of a velocity error `e`, given M e: 1 is just tolerable. NaN or infinite if `e` is.
+    fn error_size(&self, e: &[f64], mass_e: &[f64]) -> f64;
+}
+
+/// What one try of a step came to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Trial {
+    /// Size of the estimated error; 1 is just tolerable.
+    Error(f64),
+    /// The matrix could not be factored; the block row.
+    Singular(usize),
+}

@@ -1,0 +1,5 @@
+//! Block-tridiagonal matrices of 6×6 blocks; knows no cable.
+
+mod block_tridiagonal;
+
+pub use block_tridiagonal::{BLOCK, Block, BlockTridiagonal, SingularBlock};

@@ -1,0 +1,6 @@
+//! Small mathematics that several rooms share.
+
+pub mod interpolation;
+pub mod jet;
+pub mod lanes;
+pub mod quadrature;

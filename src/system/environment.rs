@@ -1,0 +1,23 @@
+//! What acts on the cable from outside at one instant.
+
+use crate::hydro::line::Flow;
+use crate::math::jet::Jet;
+use crate::math::lanes::Vec3;
+use crate::ship::Frame;
+
+/// Boundary motion, ship's frame, flow and forces at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Environment {
+    /// World motion of the cable's first node.
+    pub base: [Jet; 3],
+    /// World direction along which a `tangent` end holds the slope.
+    pub tangent: Vec3<f64>,
+    /// The ship.
+    pub frame: Frame,
+    /// Uniform current.
+    pub flow: Flow,
+    /// Gravitational acceleration, m/s².
+    pub gravity: Vec3<f64>,
+    /// External force on the body, N.
+    pub body_force: Vec3<f64>,
+}

@@ -1,0 +1,49 @@
+//! M, D, K of the linearized system and how element contributions enter them.
+
+use crate::linalg::BlockTridiagonal;
+use crate::math::lanes::Mat3;
+
+/// Derivatives of G = F(t, u, w) − M(u) a: M = −∂G/∂a, D = −∂G/∂w, K = −∂G/∂u.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Matrices {
+    /// kg.
+    pub mass: BlockTridiagonal,
+    /// N·s/m.
+    pub damping: BlockTridiagonal,
+    /// N/m.
+    pub stiffness: BlockTridiagonal,
+}
+
+impl Matrices {
+    /// All zero, for `n` nodes.
+    pub fn zeros(n: usize) -> Self {
+        Self { mass: BlockTridiagonal::zeros(n), damping: BlockTridiagonal::zeros(n), stiffness: BlockTridiagonal::zeros(n) }
+    }
+}
+
+/// m −= Σ_ij row_i col_j b over the 12×12 of element `e`.
+#[inline(always)]
+pub fn subtract_outer(m: &mut BlockTridiagonal, e: usize, row: &[f64; 4], col: &[f64; 4], b: &Mat3<f64>) {
+    for i in 0..4 {
+        for j in 0..4 {
+            let f = row[i] * col[j];
+            let block = element_block(m, e, i, j);
+            for r in 0..3 {
+                for c in 0..3 {
+                    block[3 * (i % 2) + r][3 * (j % 2) + c] -= f * b[r][c];
+                }
+            }
+        }
+    }
+}
+
+/// The 6×6 block that couples slots `i` and `j` (0: r(0), 1: r_p(0), 2: r(L), 3: r_p(L)) of element `e`.
+#[inline(always)]
+pub fn element_block(m: &mut BlockTridiagonal, e: usize, i: usize, j: usize) -> &mut crate::linalg::Block {
+    match (i / 2, j / 2) {
+        (0, 0) => &mut m.diagonal[e],
+        (0, 1) => &mut m.upper[e],
+        (1, 0) => &mut m.lower[e + 1],
+        _ => &mut m.diagonal[e + 1],
+    }
+}

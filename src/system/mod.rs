@@ -1,0 +1,493 @@
+//! Assembly: the cable, its ends, water and contact as one second-order system in coordinates relative to the first node.
+//!
+//! r(p, t) = r_b(t) + u(p, t), where r_b is the first node's prescribed motion. So u(0) = 0 exactly at every time, the boundary's motion enters
+//! only as the uniform inertia −M r̈_b and through the velocities that drag and contact see, and a ship far from the origin costs no digits.
+
+mod elements;
+mod environment;
+mod matrices;
+mod points;
+mod wetting;
+
+pub use elements::{Chain, Tally, Wetness, gather};
+pub use environment::Environment;
+pub use matrices::Matrices;
+pub use points::ElementPoint;
+
+use crate::cable::section::Section;
+use crate::contact::drum::Drum;
+use crate::hydro::line::{Flow, LineInWater, LinePoint};
+use crate::hydro::lump::LumpInWater;
+use crate::hydro::surface::line_share;
+use crate::integrator::Problem;
+use crate::math::jet::Jet;
+use crate::math::lanes::{Mat3, Vec3, add_identity, add_outer, dot};
+use crate::math::quadrature::GAUSS3;
+use crate::scene::Scene;
+use crate::ship::ShipDrive;
+use crate::sim::Channel;
+use crate::winch::{DrumGeometry, WinchDrive};
+
+/// Contact points per element, at the middles of equal intervals.
+const CONTACT_POINTS: usize = 12;
+/// Stiffness of a `tangent` end over EI/L of the first element: its slope is held to about one over this.
+const CLAMP: f64 = 1e4;
+
+/// Where the first node goes.
+#[derive(Clone, Debug)]
+pub enum FirstEnd {
+    /// On the drum.
+    Winch {
+        /// Its shape.
+        geometry: DrumGeometry,
+        /// Its rotation.
+        drive: Box<WinchDrive>,
+        /// Contact of the cable with it.
+        contact: Option<Drum>,
+        /// Stiffness that holds the slope, N·m; 0 when it is free.
+        clamp: f64,
+    },
+    /// Fixed in ship axes.
+    Anchor(Vec3<f64>),
+}
+
+/// The lump at the last node.
+#[derive(Clone, Debug)]
+pub struct Lump {
+    /// kg.
+    pub mass: f64,
+    /// In water.
+    pub water: Option<LumpInWater>,
+}
+
+/// An input that is linear in time over a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ramp {
+    /// Value at the step's begin.
+    pub value: f64,
+    /// Its rate.
+    pub rate: f64,
+}
+
+impl Ramp {
+    fn at(&self, tau: f64) -> f64 {
+        self.value + tau * self.rate
+    }
+}
+
+impl From<&Channel> for Ramp {
+    fn from(c: &Channel) -> Self {
+        Self { value: c.value, rate: c.first.unwrap_or(0.0) }
+    }
+}
+
+/// The assembled system.
+#[derive(Clone, Debug)]
+pub struct System {
+    /// The elements.
+    pub chain: Chain,
+    /// Arc length of each node, m.
+    pub arc: Vec<f64>,
+    /// The first end.
+    pub first: FirstEnd,
+    /// The last end.
+    pub lump: Lump,
+    /// The ship.
+    pub ship: ShipDrive,
+    /// Time at which the present step began, s.
+    pub begin: f64,
+    /// Uniform current.
+    pub current: [Ramp; 2],
+    /// Force on the body.
+    pub body_force: [Ramp; 3],
+    /// Forces of each element on its slots, of the last evaluation, without contact with the drum.
+    pub forces: Vec<[f64; 12]>,
+    /// Forces of the drum on the elements' slots, of the last evaluation.
+    pub contact_forces: Vec<[f64; 12]>,
+    /// Force of everything outside the cable on the last node, of the last evaluation, N.
+    pub lump_force: Vec3<f64>,
+    /// Couple-like force of the clamp on the first slope, N·m.
+    pub clamp_force: Vec3<f64>,
+    /// Sums of the last evaluation.
+    pub tally: Tally,
+    /// Static evaluation: the boundary's velocity is seen by the water, its acceleration and the winch's rate are not.
+    pub frozen: bool,
+    gravity: f64,
+    /// Tolerable velocity error in the mass norm, kg·m²/s².
+    tolerance: f64,
+    matrices: Matrices,
+}
+
+impl System {
+    /// From a checked scene.
+    pub fn new(scene: &Scene) -> Self {
+        let section = Section::new(&scene.cable);
+        let water = scene.fluid.as_ref().map(|f| LineInWater::new(f, scene.cable.diameter, scene.gravity));
+        let mut arc = vec![0.0];
+        for l in &scene.elements {
+            arc.push(arc[arc.len() - 1] + l);
+        }
+        let first = match (&scene.winch, &scene.anchor) {
+            (Some(w), _) => {
+                let geometry = DrumGeometry::new(w, scene.cable.diameter);
+                FirstEnd::Winch {
+                    geometry,
+                    drive: Box::new(WinchDrive::new(w)),
+                    contact: w.contact.map(|law| Drum { axis: geometry.axis, radius: geometry.radius, law }),
+                    clamp: if w.tangent_end { CLAMP * scene.cable.ei / scene.elements[0] } else { 0.0 },
+                }
+            }
+            (None, anchor) => FirstEnd::Anchor(anchor.map_or([0.0; 3], Into::into)),
+        };
+        let lump = Lump {
+            mass: scene.body.as_ref().map_or(0.0, |b| b.mass),
+            water: scene.body.as_ref().and_then(|b| scene.fluid.as_ref().map(|f| LumpInWater::new(f, b, scene.gravity))),
+        };
+        let n = scene.elements.len();
+        Self {
+            chain: Chain { lengths: scene.elements.clone(), mass_per_length: scene.cable.mass_per_length, section, water },
+            arc,
+            first,
+            lump,
+            ship: ShipDrive::default(),
+            begin: 0.0,
+            current: Default::default(),
+            body_force: Default::default(),
+            forces: vec![[0.0; 12]; n],
+            contact_forces: vec![[0.0; 12]; n],
+            lump_force: [0.0; 3],
+            clamp_force: [0.0; 3],
+            tally: Tally::default(),
+            frozen: false,
+            gravity: scene.gravity,
+            tolerance: 1.0,
+            matrices: Matrices::default(),
+        }
+    }
+
+    /// Number of nodes.
+    pub fn nodes(&self) -> usize {
+        self.arc.len()
+    }
+
+    /// Mass of the cable, kg.
+    pub fn cable_mass(&self) -> f64 {
+        self.chain.mass_per_length * self.arc[self.arc.len() - 1]
+    }
+
+    /// Sets the tolerable velocity error so that it means an error of `relative` in a tension of size `tension`:
+    /// an axial wave of velocity Δv carries ΔT = √(EA m_l) Δv.
+    pub fn set_tolerance(&mut self, relative: f64, tension: f64) {
+        let v = relative * tension / (self.chain.section.ea * self.chain.mass_per_length).sqrt();
+        self.tolerance = v * v * self.cable_mass();
+    }
+
+    /// The outside world at `t`.
+    pub fn environment(&self, t: f64) -> Environment {
+        let frame = self.ship.frame(t);
+        let tau = t - self.begin;
+        let (mut base, tangent) = match &self.first {
+            FirstEnd::Winch { geometry, drive, .. } => {
+                let mut phi = drive.angle(t);
+                if self.frozen {
+                    phi = Jet::constant(phi.0[0]);
+                }
+                let (rim, along) = geometry.rim(phi);
+                (frame.point(&rim), frame.direction(&along).map(|j| j.0[0]))
+            }
+            FirstEnd::Anchor(s) => (frame.point(&s.map(Jet::constant)), [0.0; 3]),
+        };
+        if self.frozen {
+            for b in &mut base {
+                (b.0[2], b.0[3]) = (0.0, 0.0);
+            }
+        }
+        Environment {
+            base,
+            tangent,
+            frame,
+            flow: Flow {
+                velocity: [self.current[0].at(tau), self.current[1].at(tau), 0.0],
+                acceleration: if self.frozen { [0.0; 3] } else { [self.current[0].rate, self.current[1].rate, 0.0] },
+            },
+            gravity: [0.0, 0.0, -self.gravity],
+            body_force: std::array::from_fn(|c| self.body_force[c].at(tau)),
+        }
+    }
+
+    /// Evaluates all forces; with `TANGENT` adds to the matrices, which the caller has cleared.
+    fn evaluate<const TANGENT: bool>(&mut self, env: &Environment, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64], m: &mut Matrices) {
+        self.tally = self.chain.pass::<TANGENT>(env, u, w, a, &mut self.forces, m);
+        if self.chain.water.is_some() {
+            self.surface::<TANGENT>(env, u, w, a, m);
+        }
+        self.contact::<TANGENT>(env, u, w, m);
+        f.fill(0.0);
+        for (e, (q, c)) in self.forces.iter().zip(&self.contact_forces).enumerate() {
+            for k in 0..12 {
+                f[6 * e + k] += q[k] + c[k];
+            }
+        }
+        self.ends::<TANGENT>(env, u, w, a, f, m);
+    }
+
+    /// Elements that the water's surface crosses: fluid forces on the wet pieces, each with its own three points.
+    fn surface<const TANGENT: bool>(&mut self, env: &Environment, u: &[f64], w: &[f64], a: Option<&[f64]>, m: &mut Matrices) {
+        let Some(water) = &self.chain.water else { return };
+        let half = 0.5 * water.diameter;
+        let (forces, tally) = (&mut self.forces, &mut self.tally);
+        for (e, &l) in self.chain.lengths.iter().enumerate() {
+            let (wetness, height) = self.chain.wetness(water, env, u, e);
+            if wetness != Wetness::Partial {
+                continue;
+            }
+            height.wet_pieces(water.waterline - half, water.waterline + half, |from, to| {
+                for (x, weight) in GAUSS3 {
+                    let x = from + (to - from) * x;
+                    let wl = (to - from) * l * weight;
+                    let point = ElementPoint::new(u, w, e, l, x);
+                    let ra = a.map_or([0.0; 3], |a| crate::cable::shape::interpolate(&point.s, &gather(a, e)));
+                    let at = LinePoint {
+                        z: point.u[2] + env.base[2].0[0],
+                        v: std::array::from_fn(|c| point.w[c] + env.base[c].0[1]),
+                        p: point.p,
+                        vp: point.vp,
+                        a: std::array::from_fn(|c| ra[c] + env.base[c].0[2]),
+                        w: point.w,
+                    };
+                    let load = water.load::<f64, TANGENT>(&at, &env.flow);
+                    let (share, dshare) = line_share(at.z, water.waterline, water.diameter);
+                    let s = wl * share;
+                    point.push(&load.f.map(|x| s * x), forces);
+                    let across = dot(&point.w, &point.w) - dot(&point.w, &point.p).powi(2) / dot(&point.p, &point.p);
+                    tally.kinetic += s * 0.5 * water.added_mass * across;
+                    tally.turning += s * load.turning + wl * dshare * at.v[2] * 0.5 * water.added_mass * across;
+                    if TANGENT {
+                        let mut by_r = [[0.0; 3]; 3];
+                        for r in 0..3 {
+                            by_r[r][2] = s * load.dz[r] + wl * dshare * load.f[r];
+                        }
+                        let times = |b: &Mat3<f64>| b.map(|row| row.map(|x| s * x));
+                        point.couple(Some(&by_r), Some(&times(&load.dp)), Some(&times(&load.dv)), Some(&times(&load.mass)), m);
+                    }
+                }
+            });
+        }
+    }
+
+    /// Line contact with the drum.
+    fn contact<const TANGENT: bool>(&mut self, env: &Environment, u: &[f64], w: &[f64], m: &mut Matrices) {
+        let FirstEnd::Winch { geometry, contact: Some(drum), .. } = &self.first else { return };
+        let centre = geometry.centre;
+        let rotation: Mat3<f64> = std::array::from_fn(|i| std::array::from_fn(|j| env.frame.rotation[i][j].0[0]));
+        for (e, &l) in self.chain.lengths.iter().enumerate() {
+            self.contact_forces[e] = [0.0; 12];
+            if !near(drum, &centre, env, u, e, l) {
+                continue;
+            }
+            for k in 0..CONTACT_POINTS {
+                let x = (k as f64 + 0.5) / CONTACT_POINTS as f64;
+                let point = ElementPoint::new(u, w, e, l, x);
+                let r: Vec3<f64> = std::array::from_fn(|c| point.u[c] + env.base[c].0[0]);
+                let s = env.frame.locate(&r);
+                let s: Vec3<f64> = std::array::from_fn(|c| s[c] - centre[c]);
+                if drum.gap(&s) >= 0.0 {
+                    continue;
+                }
+                let v = if self.frozen {
+                    [0.0; 3]
+                } else {
+                    env.frame.relative_velocity(&r, &std::array::from_fn(|c| point.w[c] + env.base[c].0[1]))
+                };
+                let Some(load) = drum.load(&s, &v) else { continue };
+                let wl = l / CONTACT_POINTS as f64;
+                let f = env.frame.to_world(&load.f.map(|x| wl * x));
+                point.push(&f, &mut self.contact_forces);
+                if TANGENT {
+                    // v depends on s too: ∂ṡ/∂s = −[ω]×; its part is R dv (ṘᵀR) Rᵀ.
+                    let turn: Mat3<f64> = std::array::from_fn(|i| {
+                        std::array::from_fn(|j| (0..3).map(|k| env.frame.rotation[k][i].0[1] * env.frame.rotation[k][j].0[0]).sum())
+                    });
+                    let mut ds = load.ds;
+                    if !self.frozen {
+                        for i in 0..3 {
+                            for j in 0..3 {
+                                ds[i][j] += (0..3).map(|k| load.dv[i][k] * turn[k][j]).sum::<f64>();
+                            }
+                        }
+                    }
+                    let by_r = sandwich(&rotation, &ds, wl);
+                    let by_v = sandwich(&rotation, &load.dv, wl);
+                    point.couple(Some(&by_r), None, (drum.law.damping > 0.0).then_some(&by_v), None, m);
+                }
+            }
+        }
+    }
+
+    /// The body at the last node and the clamp at the first.
+    fn ends<const TANGENT: bool>(&mut self, env: &Environment, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64], m: &mut Matrices) {
+        let n = self.nodes() - 1;
+        let at = 6 * n;
+        let mut force: Vec3<f64> = std::array::from_fn(|c| {
+            let acc = env.base[c].0[2] + a.map_or(0.0, |a| a[at + c]);
+            self.lump.mass * (env.gravity[c] - acc) + env.body_force[c]
+        });
+        let wn = [w[at], w[at + 1], w[at + 2]];
+        self.tally.kinetic += 0.5 * self.lump.mass * dot(&wn, &wn);
+        if TANGENT {
+            for c in 0..3 {
+                m.mass.diagonal[n][c][c] += self.lump.mass;
+            }
+        }
+        if let (Some(lump), Some(line)) = (&self.lump.water, &self.chain.water) {
+            let z = u[at + 2] + env.base[2].0[0];
+            let v: Vec3<f64> = std::array::from_fn(|c| wn[c] + env.base[c].0[1]);
+            let acc: Vec3<f64> = std::array::from_fn(|c| env.base[c].0[2] + a.map_or(0.0, |a| a[at + c]));
+            let (mut vf, dvf) = line.profile(z);
+            for c in 0..3 {
+                vf[c] += env.flow.velocity[c];
+            }
+            let load = lump.load(z, &v, &acc, &vf, &dvf, &env.flow.acceleration);
+            self.tally.kinetic += 0.5 * load.mass * dot(&wn, &wn);
+            self.tally.turning += 0.5 * load.mass_dz * v[2] * dot(&wn, &wn);
+            for c in 0..3 {
+                force[c] += load.f[c];
+            }
+            if TANGENT {
+                for r in 0..3 {
+                    m.mass.diagonal[n][r][r] += load.mass;
+                    m.stiffness.diagonal[n][r][2] -= load.dz[r];
+                    for c in 0..3 {
+                        m.damping.diagonal[n][r][c] -= load.dv[r][c];
+                    }
+                }
+            }
+        }
+        for c in 0..3 {
+            f[at + c] += force[c];
+        }
+        self.lump_force = force;
+        if let FirstEnd::Winch { clamp, .. } = &self.first
+            && *clamp > 0.0
+        {
+            // ½ k ‖r_p − t (t·r_p)‖²: holds the direction, leaves the stretch.
+            let t = env.tangent;
+            let p = [u[3], u[4], u[5]];
+            let along = dot(&p, &t);
+            self.clamp_force = std::array::from_fn(|c| -clamp * (p[c] - along * t[c]));
+            for c in 0..3 {
+                f[3 + c] += self.clamp_force[c];
+            }
+            if TANGENT {
+                let mut k = [[0.0; 3]; 3];
+                add_identity(&mut k, *clamp);
+                add_outer(&mut k, -clamp, &t, &t);
+                for r in 0..3 {
+                    for c in 0..3 {
+                        m.stiffness.diagonal[0][3 + r][3 + c] += k[r][c];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Prescribed rows (the first node's position) of the matrices.
+    fn pin(m: &mut Matrices) {
+        for r in 0..3 {
+            for b in [&mut m.mass, &mut m.damping, &mut m.stiffness] {
+                b.diagonal[0][r] = [0.0; 6];
+                b.upper[0][r] = [0.0; 6];
+            }
+            m.mass.diagonal[0][r][r] = 1.0;
+        }
+    }
+
+    /// Forces with all inertia, nothing zeroed: rows of the first node hold what the support must balance.
+    pub fn balance(&mut self, t: f64, u: &[f64], w: &[f64], a: &[f64], f: &mut [f64]) {
+        let env = self.environment(t);
+        let mut none = std::mem::take(&mut self.matrices);
+        self.evaluate::<false>(&env, u, w, Some(a), f, &mut none);
+        self.matrices = none;
+    }
+}
+
+/// Whether element `e` can touch the drum: its Bézier polygon's ball against the cylinder.
+fn near(drum: &Drum, centre: &Vec3<f64>, env: &Environment, u: &[f64], e: usize, l: f64) -> bool {
+    let q = gather(u, e);
+    let third = l / 3.0;
+    let polygon: [Vec3<f64>; 4] = [
+        q[0],
+        std::array::from_fn(|c| q[0][c] + third * q[1][c]),
+        std::array::from_fn(|c| q[2][c] - third * q[3][c]),
+        q[2],
+    ];
+    let middle: Vec3<f64> = std::array::from_fn(|c| 0.5 * (q[0][c] + q[2][c]));
+    let reach = polygon
+        .iter()
+        .map(|p| (0..3).map(|c| (p[c] - middle[c]).powi(2)).sum::<f64>())
+        .fold(0.0, f64::max)
+        .sqrt();
+    let s = env.frame.locate(&std::array::from_fn(|c| middle[c] + env.base[c].0[0]));
+    drum.gap(&std::array::from_fn(|c| s[c] - centre[c])) < reach
+}
+
+/// w R b Rᵀ.
+fn sandwich(rotation: &Mat3<f64>, b: &Mat3<f64>, w: f64) -> Mat3<f64> {
+    let left: Mat3<f64> = std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| rotation[i][k] * b[k][j]).sum::<f64>() * w));
+    std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| left[i][k] * rotation[j][k]).sum()))
+}
+
+impl Problem for System {
+    fn size(&self) -> usize {
+        6 * self.nodes()
+    }
+
+    fn force(&mut self, t: f64, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64]) {
+        let env = self.environment(t);
+        let mut none = std::mem::take(&mut self.matrices);
+        self.evaluate::<false>(&env, u, w, a, f, &mut none);
+        self.matrices = none;
+        f[..3].fill(0.0);
+    }
+
+    fn linearize(&mut self, t: f64, u: &[f64], w: &[f64], a: &[f64], m: &mut Matrices, f: &mut [f64]) {
+        let env = self.environment(t);
+        for b in [&mut m.mass, &mut m.damping, &mut m.stiffness] {
+            b.clear();
+        }
+        // The tangent wants F − M(u) a, the caller F: add M a back.
+        let varies = self.mass_varies();
+        self.evaluate::<true>(&env, u, w, varies.then_some(a), f, m);
+        if varies {
+            m.mass.multiply_add(1.0, a, f);
+        }
+        Self::pin(m);
+        f[..3].fill(0.0);
+    }
+
+    fn time_derivative(&mut self, t: f64, scale: f64, u: &[f64], w: &[f64], force: &[f64], f: &mut [f64]) -> bool {
+        let winch_moves = matches!(&self.first, FirstEnd::Winch { drive, .. } if drive.is_moving());
+        let inputs_move = self.current.iter().chain(&self.body_force).any(|r| r.rate != 0.0);
+        if !(self.ship.is_moving() || winch_moves || inputs_move) {
+            return false;
+        }
+        // Elastic forces do not depend on time and cancel bit by bit, so a small difference loses nothing.
+        let dt = 1e-5 * scale;
+        let tally = self.tally;
+        self.force(t + dt, u, w, None, f);
+        self.tally = tally;
+        let i = 1.0 / dt;
+        for (f, f0) in f.iter_mut().zip(force) {
+            *f = (*f - f0) * i;
+        }
+        true
+    }
+
+    fn mass_varies(&self) -> bool {
+        self.chain.water.is_some()
+    }
+
+    fn error_size(&self, e: &[f64], mass_e: &[f64]) -> f64 {
+        (e.iter().zip(mass_e).map(|(a, b)| a * b).sum::<f64>().max(0.0) / self.tolerance).sqrt()
+    }
+}
