@@ -3,6 +3,7 @@
 pub mod cable;
 pub mod contact;
 pub mod equilibrium;
+pub mod fmi;
 pub mod hydro;
 pub mod integrator;
 pub mod ledger;

@@ -1,15 +1,26 @@
-//! The error of every command: one message for the user, no backtrace.
+//! What went wrong, in words for the user.
 
 use std::fmt;
 
-/// What went wrong, in words for the user: the file, option or key, the value found and what was expected.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// Names the file, key or variable and says what was expected; `main` prints it and exits with 1.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Failure(pub String);
 
 impl fmt::Display for Failure {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(&self.0)
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
     }
 }
 
 impl std::error::Error for Failure {}
+
+impl From<String> for Failure {
+    fn from(message: String) -> Self {
+        Self(message)
+    }
+}
+
+/// A failure of an operation on a file.
+pub fn at(path: &std::path::Path, problem: impl fmt::Display) -> Failure {
+    Failure(format!("{}: {problem}", path.display()))
+}

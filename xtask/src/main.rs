@@ -1,20 +1,22 @@
-//! fairlead's commands.
+//! fairlead's commands: one file each.
 
 // Until the demo uses it.
 #[cfg_attr(not(test), allow(dead_code))]
 mod demo_report;
 mod error;
+mod host;
 #[cfg_attr(not(test), allow(dead_code))]
 mod html_report;
 #[cfg_attr(not(test), allow(dead_code))]
 mod plots;
+mod run;
 mod seakeeping;
+mod series;
 mod ship_motion;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
-/// fairlead's commands, one variant each.
 #[derive(Parser)]
 #[command(name = "cargo xtask", about = "fairlead's commands")]
 struct Cli {
@@ -24,6 +26,8 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Drive a packed FMU over a series of inputs and write its outputs as CSV
+    Run(run::Args),
     /// Write a 6-DOF ship motion in an irregular sea as CSV
     ShipMotion(ship_motion::Args),
 }
@@ -39,6 +43,7 @@ fn main() -> ExitCode {
         }
     };
     let outcome = match cli.command {
+        Command::Run(args) => run::run(args),
         Command::ShipMotion(args) => ship_motion::run(&args),
     };
     match outcome {

@@ -1,0 +1,206 @@
+//! fmi2FMUstate: rollback to the bit, across instances, as bytes.
+#![allow(unsafe_code)]
+
+mod harness;
+
+use fairlead::fmi::abi::*;
+use fairlead::fmi::exports::*;
+use harness::{Fmu, Request};
+use std::ffi::CString;
+use std::ptr::null_mut;
+
+#[test]
+fn replay_is_bit_identical() {
+    let fmu = Fmu::started();
+    let straight = Fmu::started().sail(0, 12, 0.01);
+    fmu.sail(0, 5, 0.01);
+    let point = fmu.save();
+    let before = fmu.everything();
+    for _ in 0..3 {
+        fmu.sail(5, 9, 0.01);
+        assert_eq!(fmu.restore(point), Status::Ok);
+        assert_eq!(fmu.everything(), before);
+    }
+    assert_eq!(fmu.sail(5, 12, 0.01), straight[5..]);
+    // Also back from the end of the run.
+    assert_eq!(fmu.terminate(), Status::Ok);
+    assert_eq!(fmu.restore(point), Status::Ok);
+    assert_eq!(fmu.sail(5, 12, 0.01), straight[5..]);
+    fmu.free(point);
+}
+
+#[test]
+fn a_state_carries_its_parameters_to_other_instances() {
+    let a = Fmu::new();
+    assert_eq!(a.set("cable.EA", 0.5 * a.get("cable.EA")), Status::Ok);
+    a.start(0.0);
+    a.sail(0, 3, 0.01);
+    // Changed, but not yet used in a step.
+    assert_eq!(a.set("winch.gain_position", 120.0), Status::Ok);
+    let state = a.save();
+    let bytes = a.serialize(state);
+    let expected = a.sail(3, 8, 0.01);
+    for b in [Fmu::new(), Fmu::started()] {
+        assert_eq!(b.restore(state), Status::Ok);
+        assert_eq!(b.sail(3, 8, 0.01), expected);
+        let read = b.deserialize(&bytes).unwrap();
+        assert_eq!(b.restore(read), Status::Ok);
+        assert_eq!(b.sail(3, 8, 0.01), expected);
+        b.free(read);
+    }
+    a.free(state);
+}
+
+#[test]
+fn states_of_every_phase() {
+    let fmu = Fmu::new();
+    assert_eq!(fmu.set("ship.x", 0.003), Status::Ok);
+    let fresh = fmu.save();
+    assert_eq!(fmu.setup(1.0), Status::Ok);
+    assert_eq!(fmu.enter(), Status::Ok);
+    let initializing = fmu.save();
+    let looked = fmu.everything();
+    assert_eq!(fmu.exit(), Status::Ok);
+    assert_eq!(fmu.step(1.0, 0.02), Status::Ok);
+    let after = fmu.everything();
+
+    assert_eq!(fmu.restore(initializing), Status::Ok);
+    assert_eq!(fmu.everything(), looked);
+    assert_eq!(fmu.exit(), Status::Ok);
+    assert_eq!(fmu.step(1.0, 0.02), Status::Ok);
+    assert_eq!(fmu.everything(), after);
+
+    assert_eq!(fmu.restore(fresh), Status::Ok);
+    assert_eq!(fmu.get("ship.x"), 0.003);
+    assert_eq!(fmu.get("winch.tension"), 0.0);
+    fmu.start(1.0);
+    assert_eq!(fmu.step(1.0, 0.02), Status::Ok);
+    assert_eq!(fmu.everything(), after);
+    fmu.free(fresh);
+    fmu.free(initializing);
+}
+
+#[test]
+fn many_rollbacks() {
+    let fmu = Fmu::started();
+    let straight = Fmu::started().sail(0, 20, 0.01);
+    // A small generator is enough for "anywhere, in any order".
+    let mut random = 12345_u32;
+    let mut next = |below: u32| {
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (random >> 16) % below
+    };
+    let mut saved = vec![(0, fmu.save())];
+    for _ in 0..60 {
+        let (k, state) = saved[next(saved.len() as u32) as usize];
+        assert_eq!(fmu.restore(state), Status::Ok);
+        let last = (k + 1 + next(4)).min(20);
+        assert_eq!(fmu.sail(k, last, 0.01), straight[k as usize..last as usize]);
+        saved.push((last, fmu.save()));
+    }
+    saved.into_iter().for_each(|(_, state)| fmu.free(state));
+}
+
+#[test]
+fn handles_are_reused_and_freed() {
+    let fmu = Fmu::started();
+    let mut state = fmu.save();
+    let pointer = state;
+    fmu.sail(0, 2, 0.01);
+    let here = fmu.everything();
+    unsafe {
+        assert_eq!(fmi2GetFMUstate(fmu.c, &mut state), Status::Ok);
+        assert_eq!(state, pointer);
+        fmu.sail(2, 3, 0.01);
+        assert_eq!(fmu.restore(state), Status::Ok);
+        assert_eq!(fmu.everything(), here);
+        assert_eq!(fmi2FreeFMUstate(fmu.c, &mut state), Status::Ok);
+        assert!(state.is_null());
+        assert_eq!(fmi2FreeFMUstate(fmu.c, &mut state), Status::Ok);
+        // Something else behind the pointer.
+        let mut foreign = [0_u64; 64];
+        let mut state: FmuState = foreign.as_mut_ptr().cast();
+        fmu.refused(fmi2SetFMUstate(fmu.c, state), &["not from this FMU"]);
+        fmu.refused(fmi2GetFMUstate(fmu.c, &mut state), &["not from this FMU"]);
+        fmu.refused(fmi2FreeFMUstate(fmu.c, &mut state), &["not from this FMU"]);
+        fmu.refused(fmi2SerializedFMUstateSize(fmu.c, state, &mut 0), &["not from this FMU"]);
+    }
+}
+
+#[test]
+fn damaged_bytes_are_refused() {
+    let fmu = Fmu::started();
+    fmu.sail(0, 2, 0.01);
+    let state = fmu.save();
+    let bytes = fmu.serialize(state);
+    assert!(bytes.starts_with(b"FAIRLEAD"));
+    for length in [0, 1, 7, 8, 20, bytes.len() / 2, bytes.len() - 1] {
+        fmu.refused(fmu.deserialize(&bytes[..length]).unwrap_err(), &["fmi2DeSerializeFMUstate"]);
+    }
+    for at in (0..bytes.len()).step_by(7) {
+        let mut damaged = bytes.clone();
+        damaged[at] ^= 0x10;
+        fmu.refused(fmu.deserialize(&damaged).unwrap_err(), &["state"]);
+    }
+    fmu.refused(fmu.deserialize(&[0x5a; 4096]).unwrap_err(), &["no state of a fairlead FMU"]);
+    let mut small = vec![0; bytes.len() - 1];
+    let status = unsafe { fmi2SerializeFMUstate(fmu.c, state, small.as_mut_ptr(), small.len()) };
+    fmu.refused(status, &[&bytes.len().to_string()]);
+    fmu.free(state);
+    fmu.sail(2, 3, 0.01);
+}
+
+#[test]
+fn states_outlive_the_instance_that_made_them() {
+    let a = Fmu::started();
+    let b = Fmu::started();
+    a.sail(0, 2, 0.01);
+    let state = a.save();
+    let expected = a.sail(2, 4, 0.01);
+    drop(a);
+    assert_eq!(b.restore(state), Status::Ok);
+    assert_eq!(b.sail(2, 4, 0.01), expected);
+    b.free(state);
+    let mut none = null_mut();
+    assert_eq!(unsafe { fmi2FreeFMUstate(b.c, &mut none) }, Status::Ok);
+}
+
+#[test]
+fn instances_know_nothing_of_each_other() {
+    let alone = Fmu::started().sail(0, 6, 0.01);
+    let (a, b) = (Fmu::started(), Fmu::started());
+    let mut interleaved = Vec::new();
+    for k in 0..6 {
+        interleaved.extend(a.sail(k, k + 1, 0.01));
+        b.sail(2 * k, 2 * k + 1, 0.01 / 2.0);
+        b.sail(2 * k + 1, 2 * k + 2, 0.01 / 2.0);
+    }
+    assert_eq!(interleaved, alone);
+}
+
+#[test]
+fn eight_threads_and_one_that_hands_over() {
+    let alone = Fmu::started().sail(0, 6, 0.01);
+    std::thread::scope(|scope| {
+        let runs: Vec<_> = (0..8)
+            .map(|k| {
+                let name = CString::new(format!("rope {k}")).unwrap();
+                let made_here = Fmu::from(&Request { name: Some(name), ..Request::good() });
+                scope.spawn(move || {
+                    made_here.start(0.0);
+                    made_here.sail(0, 6, 0.01)
+                })
+            })
+            .collect();
+        for run in runs {
+            assert_eq!(run.join().unwrap(), alone);
+        }
+    });
+}
+
+#[test]
+fn instances_come_and_go() {
+    for _ in 0..100 {
+        drop(Fmu::new());
+    }
+}
