@@ -201,7 +201,7 @@ impl Simulation {
     fn settle(&mut self) {
         let (s, k) = (&mut self.state, &mut self.work);
         self.system.linearize(s.time, &s.u, &s.w, &s.a, &mut k.matrices, &mut k.force);
-        k.mass.clone_from(&k.matrices.mass);
+        k.mass.copy_from(&k.matrices.mass);
         // The mass matrix is positive definite, so this cannot fail.
         if k.mass.factor().is_ok() {
             s.a.copy_from_slice(&k.force);
