@@ -2,7 +2,7 @@
 
 mod bench;
 
-use bench::{HEAVY_WIRE, NYLON, Row, Wire, at_rest, channel, frequencies, pull, relative_rms, rms, root, run, shape_csv, started, table};
+use bench::{HEAVY_WIRE, NYLON, Row, Wire, at_rest, frequencies, heaving, pull, relative_rms, rms, root, run, shape_csv, started, table};
 use fairlead::outputs::Outputs;
 use fairlead::sim::Inputs;
 use fairlead::system::{FirstEnd, System};
@@ -261,24 +261,6 @@ fn cross_swinging_string_of_p3() {
             sim.outputs().solver.steps
         );
         assert!(tension < bounds[0] && position < bounds[1], "{tension:e} {position:e}");
-    }
-}
-
-/// s(t) A sin(2πt/T), s a half-cosine ramp over `ramp` seconds, with two derivatives.
-fn heave(t: f64, amplitude: f64, period: f64, ramp: f64) -> [f64; 3] {
-    let k = PI / ramp;
-    let s = if t < ramp { [0.5 * (1.0 - (k * t).cos()), 0.5 * k * (k * t).sin(), 0.5 * k * k * (k * t).cos()] } else { [1.0, 0.0, 0.0] };
-    let w = 2.0 * PI / period;
-    let h = [(w * t).sin(), w * (w * t).cos(), -w * w * (w * t).sin()].map(|x| amplitude * x);
-    [s[0] * h[0], s[1] * h[0] + s[0] * h[1], s[2] * h[0] + 2.0 * s[1] * h[1] + s[0] * h[2]]
-}
-
-/// The ramp takes two periods.
-fn heaving(amplitude: f64, period: f64) -> impl Fn(f64) -> Inputs {
-    move |t| {
-        let mut inputs = Inputs { ship: [channel([0.0; 3]); 6], ..Inputs::default() };
-        inputs.ship[2] = channel(heave(t, amplitude, period, 2.0 * period));
-        inputs
     }
 }
 
