@@ -113,9 +113,9 @@ fn every_function_in_every_phase() {
         ('S', Fmu::started),
         ('F', || {
             let fmu = Fmu::new();
-            assert_eq!(fmu.set("cable.EA", -1.0), Status::Ok);
+            assert_eq!(fmu.set("body.mass", -1.0), Status::Ok);
             assert_eq!(fmu.enter(), Status::Ok);
-            fmu.refused(fmu.exit(), &["cable.EA"]);
+            fmu.refused(fmu.exit(), &["body.mass"]);
             fmu
         }),
         ('T', || {
@@ -194,7 +194,7 @@ fn values_that_are_refused_leave_no_trace() {
         fmu.refused(fmi2SetInteger(fmu.c, &fmu.reference("status.code"), 1, &1), &["status.code", "output"]);
     }
     fmu.refused(fmu.set("winch.tension", 1.0), &["winch.tension", "output"]);
-    fmu.refused(fmu.set("cable.EA", 5000.0), &["cable.EA", "fixed"]);
+    fmu.refused(fmu.set("body.mass", 5000.0), &["body.mass", "fixed"]);
     assert_eq!([fmu.get("ship.x"), fmu.get("ship.y")], [0.0, 0.001]);
     fmu.sail(0, 2, 0.01);
 }
@@ -292,7 +292,7 @@ fn outputs_are_right_in_initialization_mode() {
 fn reset_is_like_new() {
     let fresh = Fmu::new();
     let fmu = Fmu::new();
-    for name in ["cable.EA", "solver.tolerance"] {
+    for name in ["body.mass", "solver.tolerance"] {
         assert_eq!(fmu.set(name, 0.9 * fmu.get(name)), Status::Ok);
     }
     fmu.start(2.0);
@@ -309,7 +309,7 @@ fn reset_is_like_new() {
 fn parameters_take_effect() {
     let fmu = Fmu::new();
     let tunable = fmu.model.variables.iter().find(|row| row.name == "winch.gain_position").unwrap().clone();
-    assert_eq!(fmu.set("cable.EA", 2.0 * fmu.get("cable.EA")), Status::Ok);
+    assert_eq!(fmu.set("body.mass", 2.0 * fmu.get("body.mass")), Status::Ok);
     fmu.start(0.0);
     let plain = Fmu::started();
     assert_ne!(fmu.sail(0, 5, 0.01), plain.sail(0, 5, 0.01));
