@@ -15,3 +15,6 @@ pub use leaves::Leaf;
 pub use model::*;
 pub use problem::{Problem, SceneErrors};
 pub use schema::best_match;
+
+#[cfg(test)]
+mod tests;
