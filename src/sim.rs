@@ -103,10 +103,7 @@ impl Simulation {
             (scene.load.is_some(), "[load]"),
             (scene.far_end.is_some(), "[far_end]"),
             (matches!(scene.initial, Initial::Released(_)), "[initial] state = \"released\""),
-            (
-                scene.winch.as_ref().is_some_and(|w| w.setpoint != crate::scene::Setpoint::External),
-                "[winch] setpoint other than \"external\"",
-            ),
+            (scene.winch.as_ref().is_some_and(|w| w.setpoint != crate::scene::Setpoint::External), "[winch] setpoint other than \"external\""),
         ];
         if let Some((_, what)) = missing.iter().find(|(present, _)| *present) {
             return Err(SimError::Start(format!("{what} is not supported by this version")));
@@ -506,10 +503,7 @@ fn shape(system: &System, t: f64, points: &[crate::scene::ShapePoint], u: &mut [
     }
     let gap = (first.position - base).norm();
     if gap > 1e-3 * end {
-        return Err(format!(
-            "initial.file starts {gap:.3e} m away from the cable's first end at ({:.4}, {:.4}, {:.4}) m",
-            base.x, base.y, base.z
-        ));
+        return Err(format!("initial.file starts {gap:.3e} m away from the cable's first end at ({:.4}, {:.4}, {:.4}) m", base.x, base.y, base.z));
     }
     // Tangents not given: central differences over the neighbours.
     let tangent = |i: usize| {
