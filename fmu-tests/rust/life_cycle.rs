@@ -68,9 +68,11 @@ fn callbacks_may_be_missing() {
     assert!(messages.take().is_empty());
 }
 
+type Call = (&'static str, &'static str, fn(&Fmu) -> Status);
+
 /// One call of every function that takes an instance, harmless where it is allowed, and the phases that allow it:
 /// I(nstantiated), (i)N(itialization), S(tepping), F(ailed), T(erminated).
-fn calls() -> Vec<(&'static str, &'static str, fn(&Fmu) -> Status)> {
+fn calls() -> Vec<Call> {
     vec![
         ("fmi2SetDebugLogging", "INSFT", |f| unsafe { fmi2SetDebugLogging(f.c, TRUE, 0, null()) }),
         ("fmi2SetupExperiment", "I", |f| f.setup(0.0)),
