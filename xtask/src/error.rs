@@ -1,0 +1,25 @@
+//! What a command reports when it fails: one line a problem, naming file, key and expectation.
+
+use std::path::Path;
+use thiserror::Error;
+
+/// Why a command failed; may have several lines, one a problem.
+#[derive(Debug, Error)]
+#[error("{0}")]
+pub struct Error(pub String);
+
+/// Result of a command.
+pub type Result<T> = std::result::Result<T, Error>;
+
+impl Error {
+    /// An error about a file.
+    pub fn at(path: &Path, what: impl std::fmt::Display) -> Self {
+        Self(format!("{}: {what}", path.display()))
+    }
+}
+
+impl From<String> for Error {
+    fn from(message: String) -> Self {
+        Self(message)
+    }
+}
