@@ -54,9 +54,9 @@ impl Element {
         for attribute in start.attributes() {
             let attribute = attribute.map_err(|e| e.to_string())?;
             let value = attribute.normalized_value(XmlVersion::Implicit1_0).map_err(|e| e.to_string())?;
-            attributes.insert(String::from_utf8_lossy(attribute.key.as_ref()).into_owned(), value.into_owned());
+            attributes.insert(attribute.key.as_ref().to_owned(), value.into_owned());
         }
-        Ok(Self { name: String::from_utf8_lossy(start.name().as_ref()).into_owned(), attributes, children: vec![] })
+        Ok(Self { name: start.name().as_ref().to_owned(), attributes, children: vec![] })
     }
 
     /// An attribute's value.

@@ -84,7 +84,10 @@ fn entries(archive: &mut Archive, bytes: &[u8], problems: &mut Vec<String>) {
                 continue;
             }
         };
-        let name = entry.name();
+        let Ok(name) = entry.name() else {
+            problems.push(format!("entry {}: its path is no UTF-8 text", i + 1));
+            continue;
+        };
         let mut complain = |what: &str| problems.push(format!("{name}: {what}"));
         if name.contains('\\') || name.starts_with('/') || name.split('/').any(|part| part == "..") {
             complain("its path has to be relative, with forward slashes and without ..");
