@@ -62,7 +62,12 @@ fn paper_body_rests_where_the_thesis_measured_it() {
         Drag::LoadingFunctions { amplification, .. } => *amplification,
         Drag::CrossFlow { .. } => panic!("another drag law"),
     };
-    println!("best G = {best:.4} (thesis 1.737): body at x = {:.4}, z = {:.4} m, {:.2} mm from the measured centroid", there[0], there[1], 1e3 * distance(&scene, best));
+    println!(
+        "best G = {best:.4} (thesis 1.737): body at x = {:.4}, z = {:.4} m, {:.2} mm from the measured centroid",
+        there[0],
+        there[1],
+        1e3 * distance(&scene, best)
+    );
     println!("at G = 1.737: body at x = {:.4}, z = {:.4} m, {:.2} mm away", at_thesis[0], at_thesis[1], 1e3 * distance(&scene, 1.737));
     // The thesis's own figure is 5.0 mm; ours aims at 2 mm.
     assert!(distance(&scene, best) < 2e-3, "{} mm", 1e3 * distance(&scene, best));
@@ -76,7 +81,8 @@ fn exact_rest_does_not_depend_on_where_the_ship_floats_or_heads() {
     scene.fluid.as_mut().unwrap().current.clear();
     let body = |x: f64, yaw: f64| {
         let mut sim = Simulation::new(&scene).unwrap();
-        let mut inputs = Inputs { winch: Channel { value: scene.winch.as_ref().unwrap().angle, ..Channel::default() }, ..Inputs::default() };
+        let mut inputs =
+            Inputs { winch: Channel { value: scene.winch.as_ref().unwrap().angle, ..Channel::default() }, ..Inputs::default() };
         inputs.ship[0].value = x;
         inputs.ship[5].value = yaw;
         sim.initialize(0.0, &inputs).unwrap();

@@ -7,8 +7,7 @@ pub type Rule<const N: usize> = [(f64, f64); N];
 pub const GAUSS2: Rule<2> = [(0.211_324_865_405_187_1, 0.5), (0.788_675_134_594_812_9, 0.5)];
 
 /// Three points, exact to degree 5.
-pub const GAUSS3: Rule<3> =
-    [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+pub const GAUSS3: Rule<3> = [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
 /// Five points, exact to degree 9.
 pub const GAUSS5: Rule<5> = [
