@@ -1,7 +1,9 @@
 //! Holds a scene file against the table of scene keys: unknown keys, wrong types, values out of range, missing keys; fills in defaults.
 
 use super::problem::Problems;
-use model_description::keys::{COEFFICIENT_COLUMNS, CORRELATIONS, Column, Constant, Form, GROUPS, Group, KEYS, Key, Presence, Range, When, key_named};
+use model_description::keys::{
+    COEFFICIENT_COLUMNS, CORRELATIONS, Column, Constant, Form, GROUPS, Group, KEYS, Key, Presence, Range, When, key_named,
+};
 use toml::{Table, Value};
 
 /// Finds everything that is wrong key by key and brings the tree into its full form: defaults filled in, real numbers as floats.

@@ -71,7 +71,9 @@ pub(super) fn inputs(shape: &Shape, value: &dyn Fn(Input) -> f64, derivative: &d
         if present { scaled(channel, sign(component)) } else { Channel::default() }
     };
     Inputs {
-        ship: std::array::from_fn(|c| shape.ship_derivatives.map_or(Channel::default(), |n| scaled(ship(c, n, value, derivative), sign(c)))),
+        ship: std::array::from_fn(|c| {
+            shape.ship_derivatives.map_or(Channel::default(), |n| scaled(ship(c, n, value, derivative), sign(c)))
+        }),
         winch: if shape.external_setpoint { setpoint(value, derivative) } else { Channel::default() },
         current: std::array::from_fn(|c| plain(shape.fluid, Input::Current(c), c)),
         body_force: std::array::from_fn(|c| plain(shape.body_force, Input::BodyForce(c), c)),

@@ -1,26 +1,33 @@
-//! What went wrong, in words for the user.
+//! What a command reports when it fails: one line a problem, naming file, key and expectation.
 
-use std::fmt;
+use std::path::Path;
+use thiserror::Error;
 
-/// Names the file, key or variable and says what was expected; `main` prints it and exits with 1.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Failure(pub String);
+/// Why a command failed; may have several lines, one a problem.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("{0}")]
+pub struct Error(pub String);
 
-impl fmt::Display for Failure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
+/// The same, as most commands call it.
+pub type Failure = Error;
+
+/// Result of a command.
+pub type Result<T> = std::result::Result<T, Error>;
+
+impl Error {
+    /// An error about a file.
+    pub fn at(path: &Path, what: impl std::fmt::Display) -> Self {
+        Self(format!("{}: {what}", path.display()))
     }
 }
 
-impl std::error::Error for Failure {}
-
-impl From<String> for Failure {
+impl From<String> for Error {
     fn from(message: String) -> Self {
         Self(message)
     }
 }
 
 /// A failure of an operation on a file.
-pub fn at(path: &std::path::Path, problem: impl fmt::Display) -> Failure {
-    Failure(format!("{}: {problem}", path.display()))
+pub fn at(path: &Path, problem: impl std::fmt::Display) -> Failure {
+    Error::at(path, problem)
 }

@@ -7,18 +7,24 @@ mod error;
 mod host;
 #[cfg_attr(not(test), allow(dead_code))]
 mod html_report;
+mod package;
+mod platform;
 #[cfg_attr(not(test), allow(dead_code))]
 mod plots;
 mod run;
+mod scenes;
 mod seakeeping;
 mod series;
 mod ship_motion;
+mod validate;
+mod xml_tree;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
+/// Cables over winches and sheaves, as FMI 2.0 co-simulation FMUs.
 #[derive(Parser)]
-#[command(name = "cargo xtask", about = "fairlead's commands")]
+#[command(name = "cargo xtask", version)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -26,8 +32,11 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    Package(package::Args),
+    Scenes(scenes::Args),
     /// Drive a packed FMU over a series of inputs and write its outputs as CSV
     Run(run::Args),
+    Validate(validate::Args),
     /// Write a 6-DOF ship motion in an irregular sea as CSV
     ShipMotion(ship_motion::Args),
 }
@@ -43,13 +52,18 @@ fn main() -> ExitCode {
         }
     };
     let outcome = match cli.command {
+        Command::Package(args) => package::run(args),
+        Command::Scenes(args) => scenes::run(args),
         Command::Run(args) => run::run(args),
+        Command::Validate(args) => validate::run(args),
         Command::ShipMotion(args) => ship_motion::run(&args),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("error: {failure}");
+            for line in failure.to_string().lines() {
+                eprintln!("error: {line}");
+            }
             ExitCode::FAILURE
         }
     }
