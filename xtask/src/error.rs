@@ -9,7 +9,7 @@ use thiserror::Error;
 pub struct Error(pub String);
 
 /// The same, as most commands call it.
-pub type Failure = Error;
+pub use self::Error as Failure;
 
 /// Result of a command.
 pub type Result<T> = std::result::Result<T, Error>;
