@@ -22,9 +22,8 @@ mod xml_tree;
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
-/// Cables over winches and sheaves, as FMI 2.0 co-simulation FMUs.
 #[derive(Parser)]
-#[command(name = "cargo xtask", version)]
+#[command(name = "cargo xtask", about = "fairlead's commands")]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -32,13 +31,16 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Pack a scene as target/fmu/NAME.fmu
     Package(package::Args),
-    Scenes(scenes::Args),
     /// Drive a packed FMU over a series of inputs and write its outputs as CSV
     Run(run::Args),
-    Validate(validate::Args),
+    /// List the built-in scenes
+    Scenes(scenes::Args),
     /// Write a 6-DOF ship motion in an irregular sea as CSV
     ShipMotion(ship_motion::Args),
+    /// Say what an importer would complain about
+    Validate(validate::Args),
 }
 
 fn main() -> ExitCode {
@@ -53,10 +55,10 @@ fn main() -> ExitCode {
     };
     let outcome = match cli.command {
         Command::Package(args) => package::run(args),
-        Command::Scenes(args) => scenes::run(args),
         Command::Run(args) => run::run(args),
-        Command::Validate(args) => validate::run(args),
+        Command::Scenes(args) => scenes::run(args),
         Command::ShipMotion(args) => ship_motion::run(&args),
+        Command::Validate(args) => validate::run(args),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,6 +1,6 @@
 //! `cargo xtask package`
 
-use crate::error::{Error, Result};
+use crate::error::{Failure, Result, at};
 use crate::platform;
 use fairlead::scene::best_match;
 use fairlead::variables::Model;
@@ -39,10 +39,10 @@ pub fn package(scene: &str, out: Option<&Path>) -> Result<PathBuf> {
     let name = &model.initial_scene.name;
     let out = out.map_or_else(|| target_folder().join("fmu").join(format!("{name}.fmu")), Path::to_path_buf);
     if out.is_dir() {
-        return Err(Error::at(&out, "is a folder; expected the FMU's file name after --out"));
+        return Err(at(&out, "is a folder; expected the FMU's file name after --out"));
     }
     let library = build_library()?;
-    let library = fs::read(&library).map_err(|e| Error::at(&library, e))?;
+    let library = fs::read(&library).map_err(|e| at(&library, e))?;
     write_archive(&out, &contents(&model, library)?)?;
     Ok(out)
 }
@@ -61,7 +61,7 @@ pub fn model(scene: &str) -> Result<Model> {
     }
     let names: Vec<_> = SCENES.iter().map(|s| s.name).collect();
     let hint = best_match(scene, names.iter().copied()).map_or(String::new(), |m| format!("; did you mean {m}?"));
-    Err(Error(format!("{scene}: neither a file nor a built-in scene{hint}; built-in scenes: {}", names.join(", "))))
+    Err(Failure(format!("{scene}: neither a file nor a built-in scene{hint}; built-in scenes: {}", names.join(", "))))
 }
 
 /// The repository's root.
@@ -83,9 +83,9 @@ fn build_library() -> Result<PathBuf> {
     cargo.current_dir(root()).env_remove("CARGO_BUILD_TARGET").arg("rustc");
     cargo.args(["--quiet", "--lib", "--release", "--crate-type", "cdylib", "--package", "fairlead", "--target-dir"]).arg(&target);
     cargo.args(["--", "-C", "strip=symbols"]).stdout(Stdio::null());
-    let status = cargo.status().map_err(|e| Error(format!("cargo cannot be started: {e}")))?;
+    let status = cargo.status().map_err(|e| Failure(format!("cargo cannot be started: {e}")))?;
     if !status.success() {
-        return Err(Error("the library did not build; cargo's messages are above".into()));
+        return Err(Failure("the library did not build; cargo's messages are above".into()));
     }
     Ok(target.join("release").join(platform::cargo_library()))
 }
@@ -95,7 +95,7 @@ type Contents = Vec<(String, Vec<u8>)>;
 
 fn contents(model: &Model, library: Vec<u8>) -> Result<Contents> {
     let document = model.document();
-    let description = xml::model_description(&document).map_err(|e| Error(format!("modelDescription.xml: {e}")))?;
+    let description = xml::model_description(&document).map_err(|e| Failure(format!("modelDescription.xml: {e}")))?;
     let mut contents = vec![
         ("modelDescription.xml".to_owned(), description),
         (platform::fmu_library(document.name), library),
@@ -110,7 +110,7 @@ fn license() -> Result<String> {
     let mut text = String::from("fairlead is licensed under either of the Apache License 2.0 or the MIT license, at your option.\n");
     for file in ["LICENSE-MIT", "LICENSE-APACHE"] {
         let path = root().join(file);
-        text += &format!("\n{}\n\n{}", "=".repeat(72), fs::read_to_string(&path).map_err(|e| Error::at(&path, e))?);
+        text += &format!("\n{}\n\n{}", "=".repeat(72), fs::read_to_string(&path).map_err(|e| at(&path, e))?);
     }
     Ok(text)
 }
@@ -118,11 +118,11 @@ fn license() -> Result<String> {
 /// Writes beside the goal and renames, so that there is never half an FMU.
 fn write_archive(path: &Path, contents: &Contents) -> Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    fs::create_dir_all(folder).map_err(|e| Error::at(folder, e))?;
-    let mut file = tempfile::Builder::new().prefix(".packing-").tempfile_in(folder).map_err(|e| Error::at(folder, e))?;
-    zip_into(file.as_file_mut(), contents).map_err(|e| Error::at(path, e))?;
-    make_readable(file.path()).map_err(|e| Error::at(path, e))?;
-    file.persist(path).map_err(|e| Error::at(path, e.error))?;
+    fs::create_dir_all(folder).map_err(|e| at(folder, e))?;
+    let mut file = tempfile::Builder::new().prefix(".packing-").tempfile_in(folder).map_err(|e| at(folder, e))?;
+    zip_into(file.as_file_mut(), contents).map_err(|e| at(path, e))?;
+    make_readable(file.path()).map_err(|e| at(path, e))?;
+    file.persist(path).map_err(|e| at(path, e.error))?;
     Ok(())
 }
 

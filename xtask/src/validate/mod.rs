@@ -2,7 +2,7 @@
 
 mod description;
 
-use crate::error::{Error, Result};
+use crate::error::{Failure, Result, at};
 use crate::platform;
 use crate::xml_tree::Element;
 use std::fs;
@@ -35,7 +35,7 @@ pub fn run(args: Args) -> Result<()> {
         return Ok(());
     }
     let lines: Vec<_> = problems.iter().map(|p| format!("{}: {p}", args.fmu.display())).collect();
-    Err(Error(lines.join("\n")))
+    Err(Failure(lines.join("\n")))
 }
 
 /// Everything wrong with an FMU.
@@ -43,9 +43,9 @@ pub fn run(args: Args) -> Result<()> {
 /// # Errors
 /// The file cannot be read or is no zip archive.
 pub fn problems(path: &Path) -> Result<Vec<String>> {
-    let bytes = fs::read(path).map_err(|e| Error::at(path, e))?;
+    let bytes = fs::read(path).map_err(|e| at(path, e))?;
     let mut archive =
-        ZipArchive::new(Cursor::new(&bytes)).map_err(|e| Error::at(path, format!("no zip archive, as an FMU has to be: {e}")))?;
+        ZipArchive::new(Cursor::new(&bytes)).map_err(|e| at(path, format!("no zip archive, as an FMU has to be: {e}")))?;
     let mut problems = Vec::new();
     entries(&mut archive, &bytes, &mut problems);
     let text = match read(&mut archive, "modelDescription.xml")
