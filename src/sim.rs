@@ -260,7 +260,7 @@ impl Simulation {
     /// [`SimError::Step`]; the state is then as it was before the call.
     pub fn step_to(&mut self, time: f64, inputs: &Inputs) -> Result<(), SimError> {
         let begin = self.state.time;
-        if !(time > begin) || !time.is_finite() {
+        if time <= begin || !time.is_finite() {
             return Err(SimError::Step(format!("the end {time} s must lie after the present time {begin} s")));
         }
         self.backup.copy(&self.state);
@@ -383,7 +383,7 @@ impl Simulation {
     fn worst_node(&self) -> usize {
         let size = |e: &[f64]| e[..3].iter().map(|x| x * x).sum::<f64>();
         let nodes = self.method.error().chunks_exact(6).enumerate();
-        nodes.fold((0, -1.0), |best, (i, e)| if !(size(e) <= best.1) { (i, size(e)) } else { best }).0
+        nodes.fold((0, -1.0), |best, (i, e)| if size(e) > best.1 || size(e).is_nan() { (i, size(e)) } else { best }).0
     }
 
     fn failure(&self, end: f64, node: usize, why: &str) -> String {
