@@ -17,6 +17,8 @@ const ITERATIONS: usize = 4000;
 const TURN: f64 = 0.25;
 /// Residual over the load at which the state counts as an equilibrium.
 const TOLERANCE: f64 = 1e-10;
+/// Rounding of a slope over the ratio of cable to element length, with room for sums of several terms.
+const ROUNDING: f64 = 2e-15;
 /// Factor by which the residual may grow in an accepted iteration.
 const GROWTH: f64 = 2.0;
 
@@ -44,8 +46,9 @@ fn iterate(system: &mut System, t: f64, u: &mut [f64], load: f64) -> Result<usiz
             .map(|r| (r[..3].iter().map(|x| x * x).sum::<f64>() + r[3..].iter().map(|x| x * x).sum::<f64>() / (shortest * shortest)).sqrt())
             .fold(0.0, f64::max)
     };
-    // Rounding of the internal forces bounds what can be asked for.
-    let small = (TOLERANCE * load).max(1e-14 * system.chain.section.ea);
+    // Rounding of the internal forces bounds what can be asked for: slopes from positions lose the digits of length over element length.
+    let finest = system.arc[system.arc.len() - 1] / shortest;
+    let small = (TOLERANCE * load).max(ROUNDING * finest * system.chain.section.ea);
     let mut delta = 1e-2;
     let mut worst = f64::INFINITY;
     for iteration in 0..ITERATIONS {

@@ -64,7 +64,7 @@ pub(super) fn output(quantity: Output, o: &Outputs, ned: bool) -> Value {
 /// Inputs in z up. What the importer says of a derivative beats what another input says of it.
 pub(super) fn inputs(shape: &Shape, value: &dyn Fn(Input) -> f64, derivative: &dyn Fn(Input, i32) -> Option<f64>) -> Inputs {
     // z down: y, z, pitch and yaw change sign; x and roll do not.
-    let sign = |component: usize| if shape.ned && component % 3 != 0 { -1.0 } else { 1.0 };
+    let sign = |component: usize| if shape.ned && !component.is_multiple_of(3) { -1.0 } else { 1.0 };
     let plain = |present: bool, input: Input, component: usize| {
         let first = derivative(input, 1);
         let channel = Channel { value: value(input), first, second: first.and(derivative(input, 2)) };

@@ -44,8 +44,7 @@ pub fn run(args: Args) -> Result<()> {
 /// The file cannot be read or is no zip archive.
 pub fn problems(path: &Path) -> Result<Vec<String>> {
     let bytes = fs::read(path).map_err(|e| at(path, e))?;
-    let mut archive =
-        ZipArchive::new(Cursor::new(&bytes)).map_err(|e| at(path, format!("no zip archive, as an FMU has to be: {e}")))?;
+    let mut archive = ZipArchive::new(Cursor::new(&bytes)).map_err(|e| at(path, format!("no zip archive, as an FMU has to be: {e}")))?;
     let mut problems = Vec::new();
     entries(&mut archive, &bytes, &mut problems);
     let text = match read(&mut archive, "modelDescription.xml")

@@ -1,0 +1,179 @@
+//! Scenes, reference tables and small numerics shared by the verification tests.
+#![allow(dead_code)] // every test binary uses its own part
+
+use fairlead::equilibrium;
+use fairlead::outputs::Outputs;
+use fairlead::scene::Scene;
+use fairlead::scene::file::SceneFile;
+use fairlead::sim::{Channel, Inputs, Simulation};
+use fairlead::system::{Matrices, Ramp, System};
+use nalgebra::{DMatrix, Vector3};
+
+/// A cable and its mesh; the rest of a scene is written as TOML.
+#[derive(Clone, Copy, Debug)]
+pub struct Wire {
+    pub length: f64,
+    pub diameter: f64,
+    pub mass_per_length: f64,
+    pub ea: f64,
+    pub ei: f64,
+    /// Further lines of the table [cable].
+    pub laws: &'static str,
+}
+
+/// The flume's nylon, as in P2, P3 and P5 of the comparison with other programs.
+pub const NYLON: Wire = Wire { length: 1.0, diameter: 4.5e-4, mass_per_length: 2e-4, ea: 222.0, ei: 2.82e-6, laws: "" };
+
+/// P4's wire.
+pub const HEAVY_WIRE: Wire =
+    Wire { length: 200.0, diameter: 0.02, mass_per_length: 1.0, ea: 1e7, ei: 20.0, laws: "compression = \"none\"\ndamping.axial = 4e4" };
+
+/// A start shape: (s, position, tangent, velocity).
+pub type Row = (f64, [f64; 3], [f64; 3], [f64; 3]);
+
+impl Wire {
+    /// The scene with `rest` (further tables) and an equal mesh; `gravity` in m/s².
+    pub fn scene_at(&self, gravity: f64, elements: usize, rest: &str, shape: Option<&str>) -> Scene {
+        let Self { length, diameter, mass_per_length, ea, ei, laws } = self;
+        let text = format!(
+            "name = \"bench\"\ngravity = {gravity:?}\n[cable]\nlength = {length:?}\ndiameter = {diameter:?}\n\
+             mass_per_length = {mass_per_length:?}\nEA = {ea:?}\nEI = {ei:?}\n{laws}\n[mesh]\nelements = {elements}\n{rest}\n"
+        );
+        match SceneFile::parse(&text, "bench.toml").and_then(|f| f.check(shape)) {
+            Ok(scene) => scene,
+            Err(e) => panic!("{e}\nin\n{text}"),
+        }
+    }
+
+    /// On earth.
+    pub fn scene(&self, elements: usize, rest: &str) -> Scene {
+        self.scene_at(9.81, elements, rest, None)
+    }
+}
+
+/// The text of a start shape.
+pub fn shape_csv(rows: &[Row]) -> String {
+    let mut text = String::from("s,x,y,z,tx,ty,tz,vx,vy,vz\n");
+    for (s, r, t, v) in rows {
+        let cells: Vec<String> = std::iter::once(s).chain(r).chain(t).chain(v).map(|x| format!("{x:?}")).collect();
+        text += &(cells.join(",") + "\n");
+    }
+    text
+}
+
+/// A simulation started under `inputs`.
+pub fn started(scene: &Scene, inputs: &Inputs) -> Simulation {
+    let mut sim = Simulation::new(scene).expect("supported");
+    sim.initialize(0.0, inputs).expect("a start state");
+    sim
+}
+
+/// Steps of `h` up to `end`, inputs and observer called with the time.
+pub fn run(sim: &mut Simulation, h: f64, end: f64, inputs: impl Fn(f64) -> Inputs, mut observe: impl FnMut(f64, &Outputs)) {
+    let first = (sim.time() / h).round() as usize;
+    let last = (end / h).round() as usize;
+    for i in first..last {
+        let t = h * (i + 1) as f64;
+        sim.step_to(t, &inputs(h * i as f64)).expect("a completed step");
+        observe(t, sim.outputs());
+    }
+}
+
+/// A value with its first two derivatives.
+pub fn channel(x: [f64; 3]) -> Channel {
+    Channel { value: x[0], first: Some(x[1]), second: Some(x[2]) }
+}
+
+/// A constant force on the body.
+pub fn pull(force: [f64; 3]) -> Inputs {
+    Inputs { body_force: force.map(|value| Channel { value, ..Channel::default() }), ..Inputs::default() }
+}
+
+/// The system of a scene in equilibrium under a constant force on the body, and its shape.
+pub fn at_rest(scene: &Scene, force: [f64; 3]) -> (System, Vec<f64>) {
+    let mut system = System::new(scene);
+    let u = settled(&mut system, scene, force);
+    (system, u)
+}
+
+/// The equilibrium of a system that has been changed by hand.
+pub fn settled(system: &mut System, scene: &Scene, force: [f64; 3]) -> Vec<f64> {
+    system.body_force = force.map(|value| Ramp { value, rate: 0.0 });
+    let load = (system.cable_mass() + system.lump.mass) * scene.gravity + Vector3::from(force).norm();
+    let mut u = equilibrium::lay_out(system, 0.0, &-Vector3::z());
+    equilibrium::solve(system, 0.0, &mut u, load).expect("an equilibrium");
+    u
+}
+
+/// Numbers of a CSV with a header line.
+pub fn table(text: &str) -> Vec<Vec<f64>> {
+    let rows = text.lines().filter(|l| !l.starts_with('#')).skip(1);
+    rows.map(|l| l.split(',').map(|x| x.parse().expect("a number")).collect()).collect()
+}
+
+/// √(Σ (a − b)² / Σ b²).
+pub fn relative_rms(pairs: &[(f64, f64)]) -> f64 {
+    let (d, s) = pairs.iter().fold((0.0, 0.0), |(d, s), (a, b)| (d + (a - b).powi(2), s + b * b));
+    (d / s).sqrt()
+}
+
+/// √(mean (a − b)²).
+pub fn rms(pairs: &[(f64, f64)]) -> f64 {
+    (pairs.iter().map(|(a, b)| (a - b).powi(2)).sum::<f64>() / pairs.len() as f64).sqrt()
+}
+
+/// Position of the last node.
+pub fn tip(u: &[f64]) -> Vector3<f64> {
+    let n = u.len();
+    Vector3::new(u[n - 6], u[n - 5], u[n - 4])
+}
+
+/// A square block-tridiagonal matrix as a dense one.
+pub fn dense(m: &fairlead::linalg::BlockTridiagonal) -> DMatrix<f64> {
+    let n = m.len();
+    let mut out = DMatrix::zeros(6 * n, 6 * n);
+    for i in 0..n {
+        for r in 0..6 {
+            for c in 0..6 {
+                out[(6 * i + r, 6 * i + c)] = m.diagonal[i][r][c];
+                if i > 0 {
+                    out[(6 * i + r, 6 * i - 6 + c)] = m.lower[i][r][c];
+                }
+                if i + 1 < n {
+                    out[(6 * i + r, 6 * i + 6 + c)] = m.upper[i][r][c];
+                }
+            }
+        }
+    }
+    out
+}
+
+/// Angular frequencies, ascending, of small motions in world component `axis` about a shape at rest in which that component is decoupled
+/// from the others. From the eigenvalues of L⁻¹ M L⁻ᵀ with K = L Lᵀ: these are 1/ω², of which the greatest, so the lowest ω, come out to
+/// rounding.
+pub fn frequencies(system: &mut System, u: &[f64], axis: usize) -> Vec<f64> {
+    use fairlead::integrator::Problem;
+    let n = u.len();
+    let zero = vec![0.0; n];
+    let (mut m, mut f) = (Matrices::zeros(n / 6), zero.clone());
+    system.linearize(0.0, u, &zero, &zero, &mut m, &mut f);
+    let rows: Vec<usize> = (0..n).filter(|i| i % 3 == axis && *i >= 3).collect();
+    let pick = |m: &DMatrix<f64>| DMatrix::from_fn(rows.len(), rows.len(), |i, j| m[(rows[i], rows[j])]);
+    let (k, m) = (pick(&dense(&m.stiffness)), pick(&dense(&m.mass)));
+    let l = k.cholesky().expect("a stable shape").l();
+    let half = l.solve_lower_triangular(&m).expect("regular");
+    let whole = l.solve_lower_triangular(&half.transpose()).expect("regular");
+    let mut w: Vec<f64> = whole.symmetric_eigenvalues().iter().map(|x| x.abs().sqrt().recip()).collect();
+    w.sort_unstable_by(f64::total_cmp);
+    w
+}
+
+/// Root of a function that changes sign between `a` and `b`.
+pub fn root(f: impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
+    let fa = f(a);
+    for _ in 0..200 {
+        let c = 0.5 * (a + b);
+        if f(c) * fa > 0.0 { a = c } else { b = c }
+    }
+    0.5 * (a + b)
+}
