@@ -89,7 +89,8 @@ struct Work {
     matrices: Matrices,
     force: Vec<f64>,
     mid: [Vec<f64>; 3],
-    mass: BlockTridiagonal,
+    /// Factors of the mass matrix where it does not depend on the shape.
+    constant_mass: Option<BlockTridiagonal>,
 }
 
 impl Simulation {
@@ -103,26 +104,33 @@ impl Simulation {
             (scene.load.is_some(), "[load]"),
             (scene.far_end.is_some(), "[far_end]"),
             (matches!(scene.initial, Initial::Released(_)), "[initial] state = \"released\""),
-            (scene.winch.as_ref().is_some_and(|w| w.setpoint != crate::scene::Setpoint::External), "[winch] setpoint other than \"external\""),
+            (
+                scene.winch.as_ref().is_some_and(|w| w.setpoint != crate::scene::Setpoint::External),
+                "[winch] setpoint other than \"external\"",
+            ),
         ];
         if let Some((_, what)) = missing.iter().find(|(present, _)| *present) {
             return Err(SimError::Start(format!("{what} is not supported by this version")));
         }
-        let system = System::new(scene);
+        let mut system = System::new(scene);
         let (n, nodes) = (system.size(), system.nodes());
         let zeros = || vec![0.0; n];
+        let mut matrices = Matrices::zeros(nodes);
+        let mut constant_mass = None;
+        if !system.mass_varies() {
+            let straight: Vec<f64> = system.arc.iter().flat_map(|s| [*s, 0.0, 0.0, 1.0, 0.0, 0.0]).collect();
+            system.linearize(0.0, &straight, &zeros(), &zeros(), &mut matrices, &mut zeros());
+            let mut mass = matrices.mass.clone();
+            mass.factor().map_err(|e| SimError::Start(format!("the mass matrix is singular at node {}", e.row)))?;
+            constant_mass = Some(mass);
+        }
         let state = State { u: zeros(), w: zeros(), a: zeros(), ..State::default() };
         Ok(Self {
             scene: scene.clone(),
             method: Rodas4::new(n),
             backup: state.clone(),
             state,
-            work: Work {
-                matrices: Matrices::zeros(nodes),
-                force: zeros(),
-                mid: [zeros(), zeros(), zeros()],
-                mass: BlockTridiagonal::zeros(nodes),
-            },
+            work: Work { matrices, force: zeros(), mid: [zeros(), zeros(), zeros()], constant_mass },
             outputs: Outputs {
                 cable: crate::outputs::CableOutputs { points: vec![Vector3::zeros(); scene.points], ..Default::default() },
                 ..Outputs::default()
@@ -184,7 +192,7 @@ impl Simulation {
         self.state.tension = weight.max(self.outputs.cable.tension_max);
         self.system.set_tolerance(STRICTNESS * self.scene.solver.tolerance, self.state.tension);
         self.state.step = self.first_step();
-        self.state.ledger = Ledger::start(&self.system.tally, 1e-6 * self.state.tension * self.scene.cable.diameter);
+        self.state.ledger = Ledger::start(&self.system.tally, self.state.tension * self.scene.cable.diameter);
         self.outputs.solver = Default::default();
         self.outputs.status = Default::default();
         Ok(())
@@ -197,15 +205,27 @@ impl Simulation {
         wave.clamp(10.0 * self.scene.solver.step_min, self.scene.solver.step_max)
     }
 
-    /// Accelerations and forces of the present state.
+    /// Accelerations of the start state.
     fn settle(&mut self) {
         let (s, k) = (&mut self.state, &mut self.work);
         self.system.linearize(s.time, &s.u, &s.w, &s.a, &mut k.matrices, &mut k.force);
-        k.mass.copy_from(&k.matrices.mass);
+        let mut mass = k.matrices.mass.clone();
         // The mass matrix is positive definite, so this cannot fail.
-        if k.mass.factor().is_ok() {
+        if mass.factor().is_ok() {
             s.a.copy_from_slice(&k.force);
-            k.mass.solve(&mut s.a);
+            mass.solve(&mut s.a);
+        }
+    }
+
+    /// Accelerations and the ledger's last entry at the end of a communication step. Where the mass matrix depends on the shape the method
+    /// has carried the accelerations along; elsewhere it has been factored once for all.
+    fn conclude(&mut self) {
+        let (s, k) = (&mut self.state, &mut self.work);
+        self.system.force(s.time, &s.u, &s.w, None, &mut k.force);
+        s.ledger.reach(&self.system.tally, &s.w, &k.force);
+        if let Some(mass) = &k.constant_mass {
+            s.a.copy_from_slice(&k.force);
+            mass.solve(&mut s.a);
         }
     }
 
@@ -240,7 +260,7 @@ impl Simulation {
     /// [`SimError::Step`]; the state is then as it was before the call.
     pub fn step_to(&mut self, time: f64, inputs: &Inputs) -> Result<(), SimError> {
         let begin = self.state.time;
-        if !(time > begin) || !time.is_finite() {
+        if time <= begin || !time.is_finite() {
             return Err(SimError::Step(format!("the end {time} s must lie after the present time {begin} s")));
         }
         self.backup.copy(&self.state);
@@ -252,8 +272,7 @@ impl Simulation {
                 if let FirstEnd::Winch { drive, .. } = &mut self.system.first {
                     drive.commit(time);
                 }
-                self.settle();
-                self.complete_ledger();
+                self.conclude();
                 self.observe();
                 Ok(())
             }
@@ -315,7 +334,7 @@ impl Simulation {
                     Trial::Error(_) => (f64::INFINITY, "the solution is not finite"),
                     Trial::Singular(_) => (f64::INFINITY, "the system's matrix is singular"),
                 };
-                let factor = (0.9 * error.powf(-1.0 / Rodas4::ESTIMATE_ORDER as f64)).clamp(0.2, 5.0);
+                let factor = (0.85 * error.powf(-1.0 / Rodas4::ESTIMATE_ORDER as f64)).clamp(0.2, 5.0);
                 if error <= 1.0 {
                     let wanted = h * factor;
                     // A step cut short by the communication point says nothing against longer ones.
@@ -360,16 +379,11 @@ impl Simulation {
         Ok(())
     }
 
-    fn complete_ledger(&mut self) {
-        let s = &mut self.state;
-        s.ledger.reach(&self.system.tally, &s.w, &self.work.force);
-    }
-
     /// The node with the greatest velocity error.
     fn worst_node(&self) -> usize {
         let size = |e: &[f64]| e[..3].iter().map(|x| x * x).sum::<f64>();
         let nodes = self.method.error().chunks_exact(6).enumerate();
-        nodes.fold((0, -1.0), |best, (i, e)| if !(size(e) <= best.1) { (i, size(e)) } else { best }).0
+        nodes.fold((0, -1.0), |best, (i, e)| if size(e) > best.1 || size(e).is_nan() { (i, size(e)) } else { best }).0
     }
 
     fn failure(&self, end: f64, node: usize, why: &str) -> String {
@@ -503,7 +517,10 @@ fn shape(system: &System, t: f64, points: &[crate::scene::ShapePoint], u: &mut [
     }
     let gap = (first.position - base).norm();
     if gap > 1e-3 * end {
-        return Err(format!("initial.file starts {gap:.3e} m away from the cable's first end at ({:.4}, {:.4}, {:.4}) m", base.x, base.y, base.z));
+        return Err(format!(
+            "initial.file starts {gap:.3e} m away from the cable's first end at ({:.4}, {:.4}, {:.4}) m",
+            base.x, base.y, base.z
+        ));
     }
     // Tangents not given: central differences over the neighbours.
     let tangent = |i: usize| {

@@ -32,7 +32,7 @@ fn replay_is_bit_identical() {
 #[test]
 fn a_state_carries_its_parameters_to_other_instances() {
     let a = Fmu::new();
-    assert_eq!(a.set("cable.EA", 0.5 * a.get("cable.EA")), Status::Ok);
+    assert_eq!(a.set("body.mass", 0.5 * a.get("body.mass")), Status::Ok);
     a.start(0.0);
     a.sail(0, 3, 0.01);
     // Changed, but not yet used in a step.

@@ -226,12 +226,14 @@ pub struct Key {
     pub tunable: bool,
     /// Whether it decides which variables there are and so cannot be a parameter.
     pub structural: bool,
+    /// Name of the parameter where the key's own name belongs to another variable.
+    pub parameter: Option<&'static str>,
     /// One sentence without a full stop.
     pub description: &'static str,
 }
 
 const fn key(id: u32, name: &'static str, form: Form, presence: Presence, description: &'static str) -> Key {
-    Key { id, name, form, presence, when: When::Always, tunable: false, structural: false, description }
+    Key { id, name, form, presence, when: When::Always, tunable: false, structural: false, parameter: None, description }
 }
 
 impl Key {
@@ -247,6 +249,11 @@ impl Key {
 
     const fn structural(mut self) -> Self {
         self.structural = true;
+        self
+    }
+
+    const fn parameter(mut self, name: &'static str) -> Self {
+        self.parameter = Some(name);
         self
     }
 
@@ -323,7 +330,7 @@ pub static KEYS: &[Key] = &[
     key(1080, "winch.position", Vector(&u::POSITION), Required, "Centre of the drum, ship axes"),
     key(1081, "winch.axis", Vector(&u::DIRECTION), Required, "Axis of the drum, ship axes; any length but zero"),
     key(1082, "winch.radius", Real(&u::LENGTH, Positive), Required, "Radius of the drum's surface; the cable's centreline runs half a diameter further out"),
-    key(1083, "winch.angle", Real(&u::ANGLE, Any), real(0.0), "Initial angle of the cable's first node about the axis, from \"up\""),
+    key(1083, "winch.angle", Real(&u::ANGLE, Any), real(0.0), "Initial angle of the cable's first node about the axis, from \"up\"").parameter("winch.initial_angle"), // an output is called winch.angle
     key(1084, "winch.gain_position", Real(&u::POSITION_GAIN, NotNegative), Required, "Angular acceleration per angle off the set-point").tunable(),
     key(1085, "winch.gain_rate", Real(&u::RATE_GAIN, NotNegative), Required, "Angular acceleration per rate off the set-point's").tunable(),
     key(1086, "winch.max_rate", Real(&u::ANGULAR_SPEED, Positive), Optional, "Greatest rate of the drum; no limit if left out").tunable(),
@@ -408,7 +415,7 @@ pub fn key_named(plain: &str) -> Option<&'static Key> {
 /// The row of a number such as `sheave[1].position[3]`, if there is one.
 pub fn leaf(name: &str) -> Option<LeafRow> {
     let (plain, indices) = strip(name)?;
-    let key = key_named(&plain).filter(|k| !k.structural)?;
+    let key = KEYS.iter().find(|k| k.parameter.unwrap_or(k.name) == plain && !k.structural)?;
     let own = &indices[usize::from(key.group().repeated).min(indices.len())..];
     let (of, tunable, detail) = match (key.form, own) {
         (Real(t, _), []) => (Of::Real(t), key.tunable, String::new()),

@@ -174,11 +174,25 @@ pub(crate) const fn reference(id: u32, index: usize) -> u32 {
     (id << 16) + index as u32
 }
 
-const fn input(id: u32, name: &'static str, on: fn(&Shape) -> bool, t: &'static Type, make: fn(usize) -> Input, description: &'static str) -> Family {
+const fn input(
+    id: u32,
+    name: &'static str,
+    on: fn(&Shape) -> bool,
+    t: &'static Type,
+    make: fn(usize) -> Input,
+    description: &'static str,
+) -> Family {
     Family { id, name, occurs: Occurs::If(on), of: Of::Real(t), signal: Signal::Input(make, Start::Zero), description }
 }
 
-const fn output(id: u32, name: &'static str, occurs: Occurs, of: Of, make: fn(usize, usize) -> Output, description: &'static str) -> Family {
+const fn output(
+    id: u32,
+    name: &'static str,
+    occurs: Occurs,
+    of: Of,
+    make: fn(usize, usize) -> Output,
+    description: &'static str,
+) -> Family {
     Family { id, name, occurs, of, signal: Signal::Output(make), description }
 }
 
@@ -204,7 +218,7 @@ pub static FAMILIES: &[Family] = &[
     input(4, "ship.{roll_rate,pitch_rate,yaw_rate}", |s| derivatives(s, 1), &u::ANGULAR_VELOCITY, |c| Input::Ship(3 + c, 1), "Time derivative of the attitude angle, {}"),
     input(5, "ship.{ax,ay,az}", |s| derivatives(s, 2), &u::ACCELERATION, |c| Input::Ship(c, 2), "Second time derivative of the ship frame's position in the inertial frame, {}"),
     input(6, "ship.{roll_acceleration,pitch_acceleration,yaw_acceleration}", |s| derivatives(s, 2), &u::ANGULAR_ACCELERATION, |c| Input::Ship(3 + c, 2), "Second time derivative of the attitude angle, {}"),
-    Family { id: 7, name: "winch.setpoint", occurs: If(|s| s.external_setpoint && !s.payout_command), of: Real(&u::ANGLE), signal: Signal::Input(|_| Input::Setpoint, Start::Parameter("winch.angle")), description: "Set-point of the drum angle, right-handed about the axis from \"up\"" },
+    Family { id: 7, name: "winch.setpoint", occurs: If(|s| s.external_setpoint && !s.payout_command), of: Real(&u::ANGLE), signal: Signal::Input(|_| Input::Setpoint, Start::Parameter("winch.initial_angle")), description: "Set-point of the drum angle, right-handed about the axis from \"up\"" },
     input(8, "winch.setpoint_rate", |s| s.external_setpoint && !s.payout_command, &u::ANGULAR_VELOCITY, |_| Input::SetpointRate, "Time derivative of the set-point"),
     input(9, "winch.setpoint", |s| s.external_setpoint && s.payout_command, &u::PAYOUT, |_| Input::Setpoint, "Set-point of the cable length paid out since the start"),
     input(10, "winch.setpoint_rate", |s| s.external_setpoint && s.payout_command, &u::VELOCITY, |_| Input::SetpointRate, "Time derivative of the set-point"),

@@ -41,7 +41,9 @@ pub fn model_description(d: &Document) -> io::Result<Vec<u8>> {
         units(w, d.variables)?;
         types(w, d.variables)?;
         parent(w, "LogCategories", vec![], |w| {
-            LOG_CATEGORIES.iter().try_for_each(|(name, text)| leaf(w, "Category", vec![("name", (*name).into()), ("description", (*text).into())]))
+            LOG_CATEGORIES
+                .iter()
+                .try_for_each(|(name, text)| leaf(w, "Category", vec![("name", (*name).into()), ("description", (*text).into())]))
         })?;
         let (start, stop, step) = EXPERIMENT;
         let experiment = [("startTime", start), ("stopTime", stop), ("tolerance", d.tolerance), ("stepSize", step)];

@@ -68,7 +68,9 @@ unsafe fn enter<'a>(component: Component) -> Option<Entry<'a>> {
     }
     // SAFETY: the magic word says that this is a handle of ours.
     let handle = unsafe { &*handle };
-    (!handle.busy.swap(true, Ordering::Acquire)).then_some(Entry(handle))
+    let free = !handle.busy.swap(true, Ordering::Acquire);
+    // Lazily: an entry that is made is also dropped, and would let others in.
+    free.then(|| Entry(handle))
 }
 
 /// Runs the body of an exported function: checks the pointer, then the table of allowed phases, catches panics, and turns

@@ -43,8 +43,8 @@ pub(super) struct Instance {
     simulation: Option<Simulation>,
     /// Parameter changes that the simulation's scene has.
     applied: Vec<(usize, Value)>,
-    /// What the importer was last told about the run.
-    told: RunStatus,
+    /// The status code that the importer knows of.
+    told: i32,
 }
 
 impl Instance {
@@ -60,7 +60,7 @@ impl Instance {
             start: Start::Unknown,
             simulation: None,
             applied: Vec::new(),
-            told: RunStatus::default(),
+            told: 0,
         }
     }
 
@@ -72,7 +72,7 @@ impl Instance {
         self.start = Start::Unknown;
         self.simulation = None;
         self.applied.clear();
-        self.told = RunStatus::default();
+        self.told = 0;
         self.phase = Phase::Instantiated;
         self.log.event(|| "reset".into());
         Ok(())
@@ -218,15 +218,14 @@ impl Instance {
         });
         self.time = target;
         self.table.expire_derivatives();
-        self.tell(status)
+        self.tell(&status)
     }
 
-    /// A warning whenever the run becomes worse or has a new reason, not at every step.
-    fn tell(&mut self, status: RunStatus) -> Outcome {
-        let news = status.code > 0 && status != self.told;
-        let message = news.then(|| format!("t = {} s: {}", self.time, status.message));
-        self.told = status;
-        message.map_or(Ok(()), |message| Err(warning(message)))
+    /// A warning when the run becomes worse, not at every step while it is.
+    fn tell(&mut self, status: &RunStatus) -> Outcome {
+        let worse = status.code > self.told;
+        self.told = status.code;
+        if worse { Err(warning(format!("t = {} s: {}", self.time, status.message))) } else { Ok(()) }
     }
 
     /// Where this step ends. The master's clock counts; our own time only tells whether master and FMU mean the same step.
@@ -285,7 +284,7 @@ impl Instance {
             stop: self.stop,
             settings: self.table.settings(),
             applied: self.applied.clone(),
-            told: self.told.clone(),
+            told: self.told,
             simulation: simulation.map(|simulation| {
                 let mut bytes = Vec::new();
                 simulation.write_state(&mut bytes);
@@ -314,7 +313,7 @@ impl Instance {
         }
         self.table.restore(&snapshot.settings);
         self.applied.clone_from(&snapshot.applied);
-        self.told.clone_from(&snapshot.told);
+        self.told = snapshot.told;
         self.time = snapshot.time;
         self.stop = snapshot.stop;
         self.phase = snapshot.phase;

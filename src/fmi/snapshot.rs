@@ -5,7 +5,6 @@
 
 use super::function::Phase;
 use super::table::{Derivatives, Settings};
-use crate::outputs::Status as RunStatus;
 use model_description::Value;
 
 const MAGIC: &[u8; 8] = b"FAIRLEAD";
@@ -28,8 +27,8 @@ pub(super) struct Snapshot {
     pub settings: Settings,
     /// The parameter changes that the simulation had: (leaf of the scene, value).
     pub applied: Vec<(usize, Value)>,
-    /// What the importer had been told of the run.
-    pub told: RunStatus,
+    /// The status code that the importer knew of.
+    pub told: i32,
     /// The simulation's own bytes, once there was a start state.
     pub simulation: Option<Vec<u8>>,
 }
@@ -49,8 +48,7 @@ impl Snapshot {
             w.length(*leaf);
             w.value(value);
         });
-        payload.i32(self.told.code);
-        payload.bytes(self.told.message.as_bytes());
+        payload.i32(self.told);
         payload.option(self.simulation.as_ref(), |w, bytes| w.bytes(bytes));
 
         let mut whole = Writer(Vec::with_capacity(FRAME + self.guid.len() + payload.0.len()));
@@ -166,7 +164,7 @@ impl<'a> Reader<'a> {
                 })?,
             },
             applied: self.list(|r| Some((r.length()?, r.value()?)))?,
-            told: RunStatus { code: self.i32()?, message: self.text()? },
+            told: self.i32()?,
             simulation: self.option(|r| Some(r.bytes()?.to_vec()))?,
         };
         self.0.is_empty().then_some(snapshot)
@@ -259,7 +257,7 @@ mod tests {
                 derivatives: vec![[Some(0.25), None], [None, None], [Some(1.0), Some(-2.0)]],
             },
             applied: vec![(17, Value::Real(2.0))],
-            told: RunStatus { code: 1, message: "slack".into() },
+            told: 1,
             simulation: Some((0..200).collect()),
         }
     }

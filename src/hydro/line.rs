@@ -292,7 +292,6 @@ fn f_q(c: f64, s: f64) -> (f64, f64) {
     (f, 0.01 * (-0.3858 + e * (3.8318 + e * (-12.48441 + e * (14.0256 - e * 5.936495)))))
 }
 
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -319,21 +318,15 @@ mod tests {
 
     /// x = (z, v, r_p).
     fn force(water: &LineInWater, x: &[f64; 7]) -> LineLoad<f64> {
-        let point = LinePoint {
-            z: x[0],
-            v: [x[1], x[2], x[3]],
-            p: [x[4], x[5], x[6]],
-            vp: [0.0; 3],
-            a: [0.5, 0.2, -0.7],
-            w: [0.0; 3],
-        };
+        let point = LinePoint { z: x[0], v: [x[1], x[2], x[3]], p: [x[4], x[5], x[6]], vp: [0.0; 3], a: [0.5, 0.2, -0.7], w: [0.0; 3] };
         water.load::<f64, true>(&point, &Flow { velocity: [0.05, -0.02, 0.0], acceleration: [0.3, 0.1, 0.0] })
     }
 
     #[test]
     fn exact_tangent_matches_central_differences() {
         for water in waters() {
-            for x in [[-2.0, 0.3, -0.4, 0.2, 0.5, 0.6, -0.7], [1.0, -0.9, 0.1, 0.4, -0.2, 0.1, 1.1], [-4.0, 0.1, 0.2, 0.5, 0.02, 0.9, 0.01]] {
+            for x in [[-2.0, 0.3, -0.4, 0.2, 0.5, 0.6, -0.7], [1.0, -0.9, 0.1, 0.4, -0.2, 0.1, 1.1], [-4.0, 0.1, 0.2, 0.5, 0.02, 0.9, 0.01]]
+            {
                 let load = force(&water, &x);
                 let scale = load.f.iter().fold(0.0f64, |a, f| a.max(f.abs()));
                 for j in 0..7 {

@@ -62,9 +62,8 @@ impl LumpInWater {
         let rel: Vec3<f64> = std::array::from_fn(|c| vf[c] - v[c]);
         let speed = dot(&rel, &rel).sqrt();
         let (cd, dcd) = self.cd.at(speed * self.reynolds);
-        let mut full: Vec3<f64> = std::array::from_fn(|c| {
-            self.c0 * cd * speed * rel[c] + self.displaced * af[c] - self.added_mass * (a[c] - af[c])
-        });
+        let mut full: Vec3<f64> =
+            std::array::from_fn(|c| self.c0 * cd * speed * rel[c] + self.displaced * af[c] - self.added_mass * (a[c] - af[c]));
         full[2] += self.buoyancy;
         let mut by_rel = [[0.0; 3]; 3];
         add_identity(&mut by_rel, self.c0 * cd * speed);
@@ -112,7 +111,9 @@ mod tests {
             force_input: false,
         };
         let lump = LumpInWater::new(&fluid, &body, 9.81);
-        let f = |x: &[f64; 4]| lump.load(x[0], &[x[1], x[2], x[3]], &[0.3, 0.1, -0.2], &[0.2, x[0] * 3.0, 0.0], &[0.0, 3.0, 0.0], &[0.1, 0.0, 0.2]);
+        let f = |x: &[f64; 4]| {
+            lump.load(x[0], &[x[1], x[2], x[3]], &[0.3, 0.1, -0.2], &[0.2, x[0] * 3.0, 0.0], &[0.0, 3.0, 0.0], &[0.1, 0.0, 0.2])
+        };
         for x in [[-1.0, 0.4, -0.3, 0.2], [0.002, 0.4, -0.3, 0.2], [-0.004, 0.0, 0.1, -0.5]] {
             let l = f(&x);
             for j in 0..4 {

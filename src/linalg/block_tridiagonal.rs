@@ -48,13 +48,6 @@ impl BlockTridiagonal {
         self.upper.fill(ZERO);
     }
 
-    /// Takes over another's entries of the same size, without allocation (a derived `clone_from` allocates).
-    pub fn copy_from(&mut self, o: &Self) {
-        self.lower.copy_from_slice(&o.lower);
-        self.diagonal.copy_from_slice(&o.diagonal);
-        self.upper.copy_from_slice(&o.upper);
-    }
-
     /// Adds `x` at (6 i + a, 6 j + b), |i − j| ≤ 1.
     #[inline]
     pub fn add(&mut self, i: usize, j: usize, a: usize, b: usize, x: f64) {

@@ -84,7 +84,7 @@ impl Real for f64 {
 
 /// `W` numbers side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(align(64))]
+#[repr(align(32))]
 pub struct Lanes<const W: usize>(pub [f64; W]);
 
 macro_rules! lanewise {

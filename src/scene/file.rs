@@ -397,7 +397,12 @@ impl InitialTable {
             Self::Shape => Initial::Shape(
                 start_shape
                     .into_iter()
-                    .map(|p| ShapePoint { s: p.s, position: turned(p.position), tangent: p.tangent.map(turned), velocity: turned(p.velocity) })
+                    .map(|p| ShapePoint {
+                        s: p.s,
+                        position: turned(p.position),
+                        tangent: p.tangent.map(turned),
+                        velocity: turned(p.velocity),
+                    })
                     .collect(),
             ),
         }

@@ -8,7 +8,7 @@ use toml::{Table, Value as Toml};
 /// A number of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Leaf {
-    /// Dotted name with 1-based indices, such as `sheave[1].position[3]` or `fluid.current.profile[1,2]`.
+    /// Parameter name: the dotted key with 1-based indices, such as `sheave[1].position[3]` or `fluid.current.profile[1,2]`.
     pub name: String,
     /// Real or Integer.
     pub value: Value,
@@ -29,7 +29,11 @@ pub(super) fn leaves(tree: &Table) -> Vec<Leaf> {
         for (path, table) in instances(tree, group) {
             for key in KEYS.iter().filter(|k| k.group().name == group.name && !k.structural && applies(k, table)) {
                 if let Some(value) = get(table, key.local_name()) {
+                    let first = all.len();
                     append(key, &join(&path, key.local_name()), value, &mut all);
+                    if let (Some(name), [leaf]) = (key.parameter, &mut all[first..]) {
+                        leaf.name = name.to_owned();
+                    }
                 }
             }
         }

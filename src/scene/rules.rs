@@ -53,7 +53,10 @@ fn parts(tree: &Table, problems: &mut Problems) {
     let ends: Vec<_> = ["body", "load", "far_end"].into_iter().filter(|name| has(tree, name)).collect();
     if let [first, others @ ..] = ends.as_slice() {
         for other in others {
-            problems.add(*other, format!("found beside [{first}]; expected at most one of [body], [load] and [far_end] at the cable's far end"));
+            problems.add(
+                *other,
+                format!("found beside [{first}]; expected at most one of [body], [load] and [far_end] at the cable's far end"),
+            );
         }
     }
 }
@@ -127,7 +130,8 @@ fn viscosity(tree: &Table, problems: &mut Problems) {
     if !has(tree, "fluid") || has(tree, "fluid.viscosity") {
         return;
     }
-    let of_reynolds = |(form, name, value): (Form, String, &Value)| (matches!(form, Form::Coefficient) && !value.is_float()).then_some(name);
+    let of_reynolds =
+        |(form, name, value): (Form, String, &Value)| (matches!(form, Form::Coefficient) && !value.is_float()).then_some(name);
     if let Some(name) = values(tree).find_map(of_reynolds) {
         problems.add("fluid.viscosity", format!("missing; {name} depends on the Reynolds number, so a number > 0 in Pa.s is expected"));
     }
@@ -152,7 +156,8 @@ fn initial(tree: &Table, problems: &mut Problems) {
     if let Some(file) = string(tree, "initial.file") {
         let inside = Path::new(file).components().all(|c| matches!(c, Component::Normal(_)));
         if file.is_empty() || !inside || file.contains(['\\', ':']) || file == "scene.toml" {
-            let message = format!("found \"{file}\"; expected a file beside or below the scene file, as a relative path with forward slashes");
+            let message =
+                format!("found \"{file}\"; expected a file beside or below the scene file, as a relative path with forward slashes");
             problems.add_once("initial.file", message);
         }
     }

@@ -1,7 +1,9 @@
 //! Holds a scene file against the table of scene keys: unknown keys, wrong types, values out of range, missing keys; fills in defaults.
 
 use super::problem::Problems;
-use model_description::keys::{COEFFICIENT_COLUMNS, CORRELATIONS, Column, Constant, Form, GROUPS, Group, KEYS, Key, Presence, Range, When, key_named};
+use model_description::keys::{
+    COEFFICIENT_COLUMNS, CORRELATIONS, Column, Constant, Form, GROUPS, Group, KEYS, Key, Presence, Range, When, key_named,
+};
 use toml::{Table, Value};
 
 /// Finds everything that is wrong key by key and brings the tree into its full form: defaults filled in, real numbers as floats.
@@ -193,7 +195,7 @@ fn check_value(form: Form, value: &mut Value) -> Result<(), String> {
         Form::Real(_, range) => real(value, range),
         Form::Integer(low, high) => value.as_integer().is_some_and(|i| (low..=high).contains(&i)),
         Form::OneOf(values) => value.as_integer().is_some_and(|i| values.contains(&i)),
-        Form::Vector(_) => value.as_array_mut().is_some_and(|a| a.len() == 3 && all(a, |v| real(v, Range::Any))),
+        Form::Vector(_) => value.as_array_mut().is_some_and(|a| a.len() == 3 && a.iter_mut().all(|v| real(v, Range::Any))),
         Form::Rows(columns) => rows(value, columns),
         Form::Coefficient => match value {
             Value::String(s) => CORRELATIONS.contains(&s.as_str()),
@@ -216,11 +218,6 @@ fn check_value(form: Form, value: &mut Value) -> Result<(), String> {
     Err(found(value) + &suggestion.map_or(String::new(), |s| format!("; did you mean \"{s}\"?")))
 }
 
-/// Whether all elements are good; looks at every one, so that each is converted.
-fn all(array: &mut [Value], good: impl Fn(&mut Value) -> bool) -> bool {
-    array.iter_mut().fold(true, |so_far, v| good(v) && so_far)
-}
-
 fn real(value: &mut Value, range: Range) -> bool {
     if let Value::Integer(i) = *value {
         *value = Value::Float(i as f64);
@@ -230,11 +227,10 @@ fn real(value: &mut Value, range: Range) -> bool {
 
 fn rows(value: &mut Value, columns: &[Column]) -> bool {
     let row = |row: &mut Value| {
-        row.as_array_mut().is_some_and(|cells| {
-            cells.len() == columns.len() && cells.iter_mut().zip(columns).fold(true, |so_far, (cell, c)| real(cell, c.range) && so_far)
-        })
+        row.as_array_mut()
+            .is_some_and(|cells| cells.len() == columns.len() && cells.iter_mut().zip(columns).all(|(cell, c)| real(cell, c.range)))
     };
-    value.as_array_mut().is_some_and(|a| !a.is_empty() && all(a, row))
+    value.as_array_mut().is_some_and(|a| !a.is_empty() && a.iter_mut().all(row))
 }
 
 fn is_identifier(s: &str) -> bool {

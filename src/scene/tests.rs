@@ -104,7 +104,10 @@ fn exact_full_scene_is_read() {
     assert_eq!(winch.contact, Some(Contact { stiffness: 1e6, damping: 0.0, exponent: 1.5 }));
     assert!(winch.payout_command && winch.tangent_end && winch.direction == 1.0 && winch.setpoint == Setpoint::Waterline);
     let sheave = &scene.sheaves[0];
-    assert_eq!((sheave.name.as_str(), sheave.over, sheave.groove_angle, sheave.groove_depth), ("sheave[1]", false, Some(0.8), f64::INFINITY));
+    assert_eq!(
+        (sheave.name.as_str(), sheave.over, sheave.groove_angle, sheave.groove_depth),
+        ("sheave[1]", false, Some(0.8), f64::INFINITY)
+    );
     let body = scene.body.expect("there");
     assert_eq!((body.drag_coefficient, body.added_mass, body.force_input), (Coefficient::Sphere, 0.5, true));
     let Initial::Shape(points) = scene.initial else { panic!("a shape") };
@@ -136,9 +139,19 @@ fn exact_every_leaf_can_be_changed_and_has_a_row() {
         assert!(leaves.iter().all(|l| l.name != "outputs.points"));
     }
     let names: Vec<_> = SceneFile::parse(FULL, "s.toml").expect("good").leaves().into_iter().map(|l| l.name).collect();
-    for name in ["gravity", "cable.I", "mesh.regions[2].length", "fluid.drag.cd_normal[2,1]", "winch.axis[2]", "sheave[1].groove_angle",
-        "sheave[1].position[3]", "fluid.current.profile[2,3]", "winch.direction", "solver.step_min", "body.added_mass"]
-    {
+    for name in [
+        "gravity",
+        "cable.I",
+        "mesh.regions[2].length",
+        "fluid.drag.cd_normal[2,1]",
+        "winch.axis[2]",
+        "sheave[1].groove_angle",
+        "sheave[1].position[3]",
+        "fluid.current.profile[2,3]",
+        "winch.direction",
+        "solver.step_min",
+        "body.added_mass",
+    ] {
         assert!(names.iter().any(|n| n == name), "{name} is no parameter");
     }
 }
@@ -157,29 +170,101 @@ fn exact_problems_name_key_value_and_expectation() {
         ("EA = 1e5", "", "s.toml: cable.EA: missing; expected a number > 0 in N, or cable.E instead"),
         ("EA = 1e5", "EA = 1e5\nE = 1", "s.toml: cable.EA: found beside cable.E; expected one of the two"),
         ("EA = 1e5", "EA = 1e5\nI = 1", "s.toml: cable.I: only allowed together with cable.E"),
-        ("[anchor]\nposition = [0, 0, 0]", "", "s.toml: winch: missing; expected exactly one of [winch] and [anchor], which hold the cable's first end"),
-        ("position = [0, 0, 0]", "position = [0, 0]", "s.toml: anchor.position: found [0.0, 0.0]; expected three finite numbers [x, y, z] in m"),
+        (
+            "[anchor]\nposition = [0, 0, 0]",
+            "",
+            "s.toml: winch: missing; expected exactly one of [winch] and [anchor], which hold the cable's first end",
+        ),
+        (
+            "position = [0, 0, 0]",
+            "position = [0, 0]",
+            "s.toml: anchor.position: found [0, 0]; expected three finite numbers [x, y, z] in m",
+        ),
         ("elements = 4", "elements = 4.0", "s.toml: mesh.elements: found 4.0; expected a whole number from 1 to 100000"),
         ("elements = 4", "elements = 0", "s.toml: mesh.elements: found 0; expected a whole number from 1 to 100000"),
         ("elements = 4", "", "s.toml: mesh.elements: missing; expected a whole number >= 1, or mesh.regions instead"),
-        ("elements = 4", "regions = [{ length = 4, elements = 1 }]", "s.toml: mesh.regions: the lengths sum to 4; expected cable.length = 10 m"),
-        ("elements = 4", "regions = [{ length = 10 }]", "s.toml: mesh.regions[1].elements: missing; expected a whole number from 1 to 100000"),
+        (
+            "elements = 4",
+            "regions = [{ length = 4, elements = 1 }]",
+            "s.toml: mesh.regions: the lengths sum to 4; expected cable.length = 10 m",
+        ),
+        (
+            "elements = 4",
+            "regions = [{ length = 10 }]",
+            "s.toml: mesh.regions[1].elements: missing; expected a whole number from 1 to 100000",
+        ),
         ("elements = 4", "regions = 3", "s.toml: mesh.regions: found 3; expected an array of tables [[mesh.regions]]"),
-        ("name = \"small\"", "name = \"7 seas\"", "s.toml: name: found \"7 seas\"; expected a C identifier (letters, digits and _, no digit first, at most 63)"),
-        ("[mesh]", "compression = \"non\"\n[mesh]", "s.toml: cable.compression: found \"non\"; did you mean \"none\"?; expected \"none\" or \"linear\""),
+        (
+            "name = \"small\"",
+            "name = \"7 seas\"",
+            "s.toml: name: found \"7 seas\"; expected a C identifier (letters, digits and _, no digit first, at most 63)",
+        ),
+        (
+            "[mesh]",
+            "compression = \"non\"\n[mesh]",
+            "s.toml: cable.compression: found \"non\"; did you mean \"none\"?; expected \"none\" or \"linear\"",
+        ),
         ("[mesh]", "damping = 3\n[mesh]", "s.toml: cable.damping: found 3; expected a table [cable.damping]"),
-        ("[mesh]", "damping.coefficient = 3\n[mesh]", "s.toml: cable.damping.coefficient: only allowed with cable.damping.model = \"gradient_rate\""),
-        ("[mesh]", "[body]\nmass = 1\n[load]\nmass = 1\nlength_inertia = 1\nlength_gravity = 1\n[mesh]", "s.toml: load: found beside [body]; expected at most one of [body], [load] and [far_end] at the cable's far end"),
-        ("[mesh]", "[load]\nmass = 1\nlength_inertia = 1\nlength_gravity = 2\n[mesh]", "s.toml: load.length_inertia: found 1; a radius of gyration about the attachment is at least load.length_gravity = 2 m"),
-        ("[mesh]", "[initial]\nstate = \"straight\"\ndirection = [0, 0, 0]\n[mesh]", "s.toml: initial.direction: found a zero vector; expected a direction [x, y, z] of any other length"),
-        ("[mesh]", "[initial]\nstate = \"released\"\ndirection = [1, 0, 0]\n[mesh]", "s.toml: initial.state: found \"released\", which needs a [body] or a [load] to be released"),
-        ("[mesh]", "[initial]\nstate = \"shape\"\nfile = \"../a.csv\"\n[mesh]", "s.toml: initial.file: found \"../a.csv\"; expected a file beside or below the scene file, as a relative path with forward slashes"),
-        ("[mesh]", "[solver]\nstep_max = 1e-10\n[mesh]", "s.toml: solver.step_min: found 0.000000001; expected at most solver.step_max = 0.0000000001 s"),
-        ("[mesh]", "[fluid]\ndensity = 1\nwaterline = 0\ndrag.law = \"loading_functions\"\ndrag.cd = \"cylinder\"\n[mesh]", "s.toml: fluid.viscosity: missing; fluid.drag.cd depends on the Reynolds number, so a number > 0 in Pa.s is expected"),
-        ("[mesh]", "[fluid]\ndensity = 1\nviscosity = 1\nwaterline = 0\ndrag.law = \"loading_functions\"\ndrag.cd = [[2, 1], [1, 1]]\n[mesh]", "s.toml: fluid.drag.cd: the first column is [2.0, 1.0]; expected it to ascend strictly"),
-        ("[mesh]", "[fluid]\ndensity = 1\nwaterline = 0\ndrag.law = \"loading_functions\"\n[mesh]", "s.toml: fluid.drag.cd: missing; expected a number >= 0, a table [[Re, C], ...] with Re > 0 and C >= 0, or \"cylinder\" or \"sphere\""),
-        ("[mesh]", "[fluid]\ndensity = 1\nwaterline = 0\ndrag.law = \"loading_functions\"\ndrag.cd = 1\n[body]\nmass = 1\nvolume = 1\ndrag_coefficient = 1\n[mesh]", "s.toml: body.drag_area: missing; a scene with [fluid] needs a number >= 0 in m2"),
-        ("[mesh]", "[[sheave]]\nposition = [0, 0, 0]\naxis = [0, 1, 0]\nradius = -1\nstiffness = 1\n[mesh]", "s.toml: sheave[1].radius: found -1.0; expected a number > 0 in m"),
+        (
+            "[mesh]",
+            "damping.coefficient = 3\n[mesh]",
+            "s.toml: cable.damping.coefficient: only allowed with cable.damping.model = \"gradient_rate\"",
+        ),
+        (
+            "[mesh]",
+            "[body]\nmass = 1\n[load]\nmass = 1\nlength_inertia = 1\nlength_gravity = 1\n[mesh]",
+            "s.toml: load: found beside [body]; expected at most one of [body], [load] and [far_end] at the cable's far end",
+        ),
+        (
+            "[mesh]",
+            "[load]\nmass = 1\nlength_inertia = 1\nlength_gravity = 2\n[mesh]",
+            "s.toml: load.length_inertia: found 1; a radius of gyration about the attachment is at least load.length_gravity = 2 m",
+        ),
+        (
+            "[mesh]",
+            "[initial]\nstate = \"straight\"\ndirection = [0, 0, 0]\n[mesh]",
+            "s.toml: initial.direction: found a zero vector; expected a direction [x, y, z] of any other length",
+        ),
+        (
+            "[mesh]",
+            "[initial]\nstate = \"released\"\ndirection = [1, 0, 0]\n[mesh]",
+            "s.toml: initial.state: found \"released\", which needs a [body] or a [load] to be released",
+        ),
+        (
+            "[mesh]",
+            "[initial]\nstate = \"shape\"\nfile = \"../a.csv\"\n[mesh]",
+            "s.toml: initial.file: found \"../a.csv\"; expected a file beside or below the scene file, as a relative path with forward slashes",
+        ),
+        (
+            "[mesh]",
+            "[solver]\nstep_max = 1e-10\n[mesh]",
+            "s.toml: solver.step_min: found 0.000000001; expected at most solver.step_max = 0.0000000001 s",
+        ),
+        (
+            "[mesh]",
+            "[fluid]\ndensity = 1\nwaterline = 0\ndrag.law = \"loading_functions\"\ndrag.cd = \"cylinder\"\n[mesh]",
+            "s.toml: fluid.viscosity: missing; fluid.drag.cd depends on the Reynolds number, so a number > 0 in Pa.s is expected",
+        ),
+        (
+            "[mesh]",
+            "[fluid]\ndensity = 1\nviscosity = 1\nwaterline = 0\ndrag.law = \"loading_functions\"\ndrag.cd = [[2, 1], [1, 1]]\n[mesh]",
+            "s.toml: fluid.drag.cd: the first column is [2.0, 1.0]; expected it to ascend strictly",
+        ),
+        (
+            "[mesh]",
+            "[fluid]\ndensity = 1\nwaterline = 0\ndrag.law = \"loading_functions\"\n[mesh]",
+            "s.toml: fluid.drag.cd: missing; expected a number >= 0, a table [[Re, C], ...] with Re > 0 and C >= 0, or \"cylinder\" or \"sphere\"",
+        ),
+        (
+            "[mesh]",
+            "[fluid]\ndensity = 1\nwaterline = 0\ndrag.law = \"loading_functions\"\ndrag.cd = 1\n[body]\nmass = 1\nvolume = 1\ndrag_coefficient = 1\n[mesh]",
+            "s.toml: body.drag_area: missing; a scene with [fluid] needs a number >= 0 in m2",
+        ),
+        (
+            "[mesh]",
+            "[[sheave]]\nposition = [0, 0, 0]\naxis = [0, 1, 0]\nradius = -1\nstiffness = 1\n[mesh]",
+            "s.toml: sheave[1].radius: found -1.0; expected a number > 0 in m",
+        ),
         ("[mesh]", "[ship]\ninput = \"pose\"\n[mesh]\nelemnts = 2", "s.toml: mesh.elemnts: unknown key; did you mean mesh.elements?"),
     ];
     for (old, new, expected) in cases {
@@ -197,9 +282,12 @@ fn exact_only_external_set_points_go_without_a_ship() {
 
 #[test]
 fn exact_all_problems_are_reported_at_once() {
-    let text = ANCHORED.replace("diameter = 0.01", "diameter = -0.01\ncolour = \"red\"").replace("elements = 4", "") + "[winch]\nradius = 0\n";
+    let text =
+        ANCHORED.replace("diameter = 0.01", "diameter = -0.01\ncolour = \"red\"").replace("elements = 4", "") + "[winch]\nradius = 0\n";
     let found = problems(&text);
-    for key in ["cable.diameter", "cable.colour", "mesh.elements", "anchor", "winch.radius", "winch.position", "winch.axis", "winch.gain_rate"] {
+    for key in
+        ["cable.diameter", "cable.colour", "mesh.elements", "anchor", "winch.radius", "winch.position", "winch.axis", "winch.gain_rate"]
+    {
         assert!(found.iter().any(|p| p.starts_with(&format!("s.toml: {key}: "))), "{key} not in {found:#?}");
     }
 }
@@ -243,7 +331,10 @@ fn exact_every_choice_of_the_table_is_understood() {
         let Form::Choice(values) = key.form else { continue };
         let name = key.local_name();
         for value in values {
-            let lines: Vec<_> = FULL.lines().map(|l| if l.starts_with(&format!("{name} =")) { format!("{name} = \"{value}\"") } else { l.into() }).collect();
+            let lines: Vec<_> = FULL
+                .lines()
+                .map(|l| if l.starts_with(&format!("{name} =")) { format!("{name} = \"{value}\"") } else { l.into() })
+                .collect();
             assert_eq!(problems(&lines.join("\n")), Vec::<String>::new(), "{} = {value}", key.name);
         }
     }

@@ -60,7 +60,8 @@ impl Track {
 
     fn record(&mut self, t: f64, w: f64) {
         let n = self.count;
-        if n >= 1 && t <= self.samples[n - 1].0 || n >= 2 && t - self.samples[n - 1].0 < CLOSE * (self.samples[n - 1].0 - self.samples[n - 2].0)
+        if n >= 1 && t <= self.samples[n - 1].0
+            || n >= 2 && t - self.samples[n - 1].0 < CLOSE * (self.samples[n - 1].0 - self.samples[n - 2].0)
         {
             self.samples[n - 1] = (t.max(self.samples[n - 1].0), w);
         } else if n < HISTORY {

@@ -89,9 +89,43 @@ impl Chain {
         (w, height)
     }
 
-    /// Overwrites `forces` (12 per element: all that acts on the element's own slots, inertia included) and adds to `matrices`.
-    /// `a`: acceleration relative to the first node for inertia forces; `tangent_a` the one at which M(u) a is linearized.
+    /// Overwrites `forces` (12 per element: all that acts on the element's own slots, inertia included) and, with `TANGENT`, adds M, D and K of
+    /// F − M(u) a to `matrices`. `a`: acceleration relative to the first node; without it no inertia relative to the first node.
     pub fn pass<const TANGENT: bool>(
+        &self,
+        env: &Environment,
+        u: &[f64],
+        w: &[f64],
+        a: Option<&[f64]>,
+        forces: &mut [[f64; 12]],
+        matrices: &mut Matrices,
+    ) -> Tally {
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
+            // SAFETY: the features that the function is compiled for were just detected.
+            #[allow(unsafe_code)]
+            return unsafe { self.pass_avx2::<TANGENT>(env, u, w, a, forces, matrices) };
+        }
+        self.pass_with::<TANGENT>(env, u, w, a, forces, matrices)
+    }
+
+    /// The same code for processors with AVX2.
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,fma")]
+    fn pass_avx2<const TANGENT: bool>(
+        &self,
+        env: &Environment,
+        u: &[f64],
+        w: &[f64],
+        a: Option<&[f64]>,
+        forces: &mut [[f64; 12]],
+        matrices: &mut Matrices,
+    ) -> Tally {
+        self.pass_with::<TANGENT>(env, u, w, a, forces, matrices)
+    }
+
+    #[inline(always)]
+    fn pass_with<const TANGENT: bool>(
         &self,
         env: &Environment,
         u: &[f64],

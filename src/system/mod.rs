@@ -216,7 +216,15 @@ impl System {
     }
 
     /// Evaluates all forces; with `TANGENT` adds to the matrices, which the caller has cleared.
-    fn evaluate<const TANGENT: bool>(&mut self, env: &Environment, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64], m: &mut Matrices) {
+    fn evaluate<const TANGENT: bool>(
+        &mut self,
+        env: &Environment,
+        u: &[f64],
+        w: &[f64],
+        a: Option<&[f64]>,
+        f: &mut [f64],
+        m: &mut Matrices,
+    ) {
         self.tally = self.chain.pass::<TANGENT>(env, u, w, a, &mut self.forces, m);
         if self.chain.water.is_some() {
             self.surface::<TANGENT>(env, u, w, a, m);
@@ -415,18 +423,10 @@ impl System {
 fn near(drum: &Drum, centre: &Vec3<f64>, env: &Environment, u: &[f64], e: usize, l: f64) -> bool {
     let q = gather(u, e);
     let third = l / 3.0;
-    let polygon: [Vec3<f64>; 4] = [
-        q[0],
-        std::array::from_fn(|c| q[0][c] + third * q[1][c]),
-        std::array::from_fn(|c| q[2][c] - third * q[3][c]),
-        q[2],
-    ];
+    let polygon: [Vec3<f64>; 4] =
+        [q[0], std::array::from_fn(|c| q[0][c] + third * q[1][c]), std::array::from_fn(|c| q[2][c] - third * q[3][c]), q[2]];
     let middle: Vec3<f64> = std::array::from_fn(|c| 0.5 * (q[0][c] + q[2][c]));
-    let reach = polygon
-        .iter()
-        .map(|p| (0..3).map(|c| (p[c] - middle[c]).powi(2)).sum::<f64>())
-        .fold(0.0, f64::max)
-        .sqrt();
+    let reach = polygon.iter().map(|p| (0..3).map(|c| (p[c] - middle[c]).powi(2)).sum::<f64>()).fold(0.0, f64::max).sqrt();
     let s = env.frame.locate(&std::array::from_fn(|c| middle[c] + env.base[c].0[0]));
     drum.gap(&std::array::from_fn(|c| s[c] - centre[c])) < reach
 }

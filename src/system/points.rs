@@ -54,7 +54,14 @@ impl ElementPoint {
 
     /// Adds the derivatives of such a force by position, r_p, velocity, and its mass, where there are any.
     #[inline]
-    pub fn couple(&self, by_r: Option<&Mat3<f64>>, by_p: Option<&Mat3<f64>>, by_v: Option<&Mat3<f64>>, mass: Option<&Mat3<f64>>, m: &mut Matrices) {
+    pub fn couple(
+        &self,
+        by_r: Option<&Mat3<f64>>,
+        by_p: Option<&Mat3<f64>>,
+        by_v: Option<&Mat3<f64>>,
+        mass: Option<&Mat3<f64>>,
+        m: &mut Matrices,
+    ) {
         let (s, sp) = (&self.s, &self.sp);
         if let Some(b) = by_r {
             subtract_outer(&mut m.stiffness, self.e, s, s, b);

@@ -64,14 +64,16 @@ pub(super) fn output(quantity: Output, o: &Outputs, ned: bool) -> Value {
 /// Inputs in z up. What the importer says of a derivative beats what another input says of it.
 pub(super) fn inputs(shape: &Shape, value: &dyn Fn(Input) -> f64, derivative: &dyn Fn(Input, i32) -> Option<f64>) -> Inputs {
     // z down: y, z, pitch and yaw change sign; x and roll do not.
-    let sign = |component: usize| if shape.ned && component % 3 != 0 { -1.0 } else { 1.0 };
+    let sign = |component: usize| if shape.ned && !component.is_multiple_of(3) { -1.0 } else { 1.0 };
     let plain = |present: bool, input: Input, component: usize| {
         let first = derivative(input, 1);
         let channel = Channel { value: value(input), first, second: first.and(derivative(input, 2)) };
         if present { scaled(channel, sign(component)) } else { Channel::default() }
     };
     Inputs {
-        ship: std::array::from_fn(|c| shape.ship_derivatives.map_or(Channel::default(), |n| scaled(ship(c, n, value, derivative), sign(c)))),
+        ship: std::array::from_fn(|c| {
+            shape.ship_derivatives.map_or(Channel::default(), |n| scaled(ship(c, n, value, derivative), sign(c)))
+        }),
         winch: if shape.external_setpoint { setpoint(value, derivative) } else { Channel::default() },
         current: std::array::from_fn(|c| plain(shape.fluid, Input::Current(c), c)),
         body_force: std::array::from_fn(|c| plain(shape.body_force, Input::BodyForce(c), c)),

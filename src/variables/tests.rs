@@ -40,10 +40,27 @@ fn exact_variables_are_well_formed() {
         assert!(v.kind == Kind::Real || v.variability != Variability::Continuous, "{}", v.name);
         assert!(!v.description.is_empty() && !v.description.ends_with('.'), "{}: {}", v.name, v.description);
     }
-    for name in ["ship.x", "ship.roll_acceleration", "winch.setpoint_rate", "current.y", "winch.force.z", "ship.force_world.x", "cable.slack",
-        "body.vz", "cable.point[25].z", "status.code", "solver.energy_error", "cable.E", "winch.position[3]", "mesh.regions[2].elements",
-        "fluid.current.profile[1,2]", "fluid.drag.amplification", "solver.steps_max", "status.message"]
-    {
+    for name in [
+        "ship.x",
+        "ship.roll_acceleration",
+        "winch.setpoint_rate",
+        "current.y",
+        "winch.force.z",
+        "ship.force_world.x",
+        "cable.slack",
+        "body.vz",
+        "cable.point[25].z",
+        "status.code",
+        "solver.energy_error",
+        "cable.E",
+        "winch.position[3]",
+        "mesh.regions[2].elements",
+        "fluid.current.profile[1,2]",
+        "fluid.drag.amplification",
+        "solver.steps_max",
+        "status.message",
+        "winch.initial_angle",
+    ] {
         assert!(names.contains(&name.to_owned()), "{name} is missing");
     }
     for name in ["outputs.points", "cable.EA", "winch.max_rate", "anchor.tension", "body.force.x", "load.x", "time"] {
@@ -77,10 +94,14 @@ fn exact_set_point_starts_where_the_drum_is() {
 fn exact_changed_parameters_reach_the_scene_or_are_named() {
     let model = flume();
     let index = |name: &str| model.leaves.iter().position(|l| l.name == name).expect("there");
-    let scene = model.scene(&[(index("winch.gain_rate"), Value::Real(7.0)), (index("mesh.regions[1].elements"), Value::Integer(3))]).expect("good");
+    let scene =
+        model.scene(&[(index("winch.gain_rate"), Value::Real(7.0)), (index("mesh.regions[1].elements"), Value::Integer(3))]).expect("good");
     assert_eq!((scene.winch.map(|w| w.gain_rate), scene.elements.len()), (Some(7.0), 15));
     let error = model.scene(&[(index("cable.diameter"), Value::Real(-1.0)), (index("body.mass"), Value::Real(f64::NAN))]).unwrap_err();
-    assert_eq!(error, "flume: body.mass: found nan; expected a number > 0 in kg\nflume: cable.diameter: found -1.0; expected a number > 0 in m");
+    assert_eq!(
+        error,
+        "flume: body.mass: found nan; expected a number > 0 in kg\nflume: cable.diameter: found -1.0; expected a number > 0 in m"
+    );
     let error = model.scene(&[(index("cable.length"), Value::Real(2.0))]).unwrap_err();
     assert!(error.contains("mesh.regions: the lengths sum to"), "{error}");
     let error = model.scene(&[(index("cable.length"), Value::Integer(2))]).unwrap_err();
@@ -90,10 +111,8 @@ fn exact_changed_parameters_reach_the_scene_or_are_named() {
 #[test]
 fn exact_ned_converts_at_the_border_only() {
     let (up, down) = (flume(), ned());
-    let outputs = Outputs {
-        body: crate::outputs::BodyOutputs { position: [1.0, 2.0, 3.0].into(), ..Default::default() },
-        ..Default::default()
-    };
+    let outputs =
+        Outputs { body: crate::outputs::BodyOutputs { position: [1.0, 2.0, 3.0].into(), ..Default::default() }, ..Default::default() };
     let position = |m: &Model| [0, 1, 2].map(|c| m.output(Output::BodyPosition(c), &outputs));
     assert_eq!(position(&up), [1.0, 2.0, 3.0].map(Value::Real));
     assert_eq!(position(&down), [1.0, -2.0, -3.0].map(Value::Real));

@@ -17,6 +17,9 @@ const FINENESS: f64 = 0.03;
 /// Steps per second below which the motion is too slow to matter.
 const LONGEST: f64 = 0.02;
 
+/// Room for this many pieces from the start: communication steps up to a second or so allocate nothing.
+const PIECES: usize = 1024;
+
 /// State and present path of the drum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WinchDrive {
@@ -35,14 +38,16 @@ pub type SetpointPath = [f64; 3];
 impl WinchDrive {
     /// At rest at the scene's angle.
     pub fn new(winch: &Winch) -> Self {
-        Self {
+        let mut drive = Self {
             state: [winch.angle, 0.0],
             gains: [winch.gain_position, winch.gain_rate],
             limits: [winch.max_rate, winch.max_acceleration],
             begin: 0.0,
             piece: 1.0,
-            path: vec![Quintic([winch.angle, 0.0, 0.0, 0.0, 0.0, 0.0])],
-        }
+            path: Vec::with_capacity(PIECES),
+        };
+        drive.hold(0.0);
+        drive
     }
 
     /// Takes over changed gains and limits.

@@ -1,18 +1,16 @@
-//! What went wrong, in words for the user.
+//! What a command reports when it fails: one line a problem, naming file, key or variable and what was expected; no backtrace.
 
-use std::fmt;
+use std::fmt::Display;
+use std::path::Path;
+use thiserror::Error;
 
-/// Names the file, key or variable and says what was expected; `main` prints it and exits with 1.
-#[derive(Clone, Debug, PartialEq)]
+/// Why a command failed; may have several lines, one a problem.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("{0}")]
 pub struct Failure(pub String);
 
-impl fmt::Display for Failure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for Failure {}
+/// Result of a command.
+pub type Result<T> = std::result::Result<T, Failure>;
 
 impl From<String> for Failure {
     fn from(message: String) -> Self {
@@ -21,6 +19,6 @@ impl From<String> for Failure {
 }
 
 /// A failure of an operation on a file.
-pub fn at(path: &std::path::Path, problem: impl fmt::Display) -> Failure {
+pub fn at(path: &Path, problem: impl Display) -> Failure {
     Failure(format!("{}: {problem}", path.display()))
 }

@@ -203,7 +203,9 @@ impl Instance {
             5 => "fmi2Pending",
             _ => "an unknown status",
         };
-        Err(Failure(format!("{function} returned {name}: {}", self.messages.take())))
+        // Some FMUs, ours among them, put the function's name into their messages.
+        let reason = self.messages.take().replace(&format!("{function}: "), "");
+        Err(Failure(format!("{function} returned {name}: {reason}")))
     }
 
     /// fmi2SetupExperiment.

@@ -1,18 +1,20 @@
 //! fairlead's commands: one file each.
 
-// Until the demo uses it.
-#[cfg_attr(not(test), allow(dead_code))]
+mod demo;
 mod demo_report;
 mod error;
 mod host;
-#[cfg_attr(not(test), allow(dead_code))]
 mod html_report;
-#[cfg_attr(not(test), allow(dead_code))]
+mod package;
+mod platform;
 mod plots;
 mod run;
+mod scenes;
 mod seakeeping;
 mod series;
 mod ship_motion;
+mod validate;
+mod xml_tree;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -26,10 +28,18 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Pack the default scene, drive it over a ship motion and report under target/demo
+    Demo(demo::Args),
+    /// Pack a scene as target/fmu/NAME.fmu
+    Package(package::Args),
     /// Drive a packed FMU over a series of inputs and write its outputs as CSV
     Run(run::Args),
+    /// List the built-in scenes
+    Scenes(scenes::Args),
     /// Write a 6-DOF ship motion in an irregular sea as CSV
     ShipMotion(ship_motion::Args),
+    /// Say what an importer would complain about
+    Validate(validate::Args),
 }
 
 fn main() -> ExitCode {
@@ -43,13 +53,19 @@ fn main() -> ExitCode {
         }
     };
     let outcome = match cli.command {
+        Command::Demo(args) => demo::run(args),
+        Command::Package(args) => package::run(args),
         Command::Run(args) => run::run(args),
+        Command::Scenes(args) => scenes::run(args),
         Command::ShipMotion(args) => ship_motion::run(&args),
+        Command::Validate(args) => validate::run(args),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("error: {failure}");
+            for line in failure.to_string().lines() {
+                eprintln!("error: {line}");
+            }
             ExitCode::FAILURE
         }
     }

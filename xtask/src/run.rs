@@ -140,7 +140,7 @@ impl Inputs {
         // A pose without one of its components, or a position without its velocity, is no motion.
         let has = |variable: &&Variable| series.names.contains(&variable.name);
         let ship: Vec<_> = description.with_causality("input").filter(|variable| is_ship_motion(&variable.name)).collect();
-        if let Some(missing) = ship.iter().find(|variable| !has(variable)).filter(|_| ship.iter().any(|variable| has(&variable))) {
+        if let Some(missing) = ship.iter().find(|variable| !has(variable)).filter(|_| ship.iter().any(has)) {
             let names: Vec<_> = ship.iter().map(|variable| variable.name.as_str()).collect();
             let problem = format!("column '{}' is missing; the FMU takes all of {}", missing.name, names.join(", "));
             return Err(at(path, problem));

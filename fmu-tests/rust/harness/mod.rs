@@ -188,7 +188,7 @@ impl Fmu {
         outputs.map(|row| self.read(row).unwrap()).collect()
     }
 
-    /// Some motion of ship and winch, in steps of `step` from `first` to before `last`; all outputs after each step.
+    /// Some motion of the ship, in steps of `step` from `first` to before `last`; all outputs after each step.
     pub fn sail(&self, first: u32, last: u32, step: f64) -> Vec<Vec<Value>> {
         let steps = first..last;
         steps
@@ -198,7 +198,7 @@ impl Fmu {
                 for (name, value) in [("ship.x", 0.002 * (1.0 - cos)), ("ship.vx", 0.006 * sin), ("ship.ax", 0.018 * cos)] {
                     assert_eq!(self.set(name, value), Status::Ok);
                 }
-                assert_eq!(self.step(t, step), Status::Ok, "{:?}", self.messages.take());
+                assert!(self.step(t, step) <= Status::Warning, "{:?}", self.messages.take());
                 self.outputs()
             })
             .collect()
