@@ -1,15 +1,12 @@
 //! fairlead's commands: one file each.
 
-// Until the demo uses it.
-#[cfg_attr(not(test), allow(dead_code))]
+mod demo;
 mod demo_report;
 mod error;
 mod host;
-#[cfg_attr(not(test), allow(dead_code))]
 mod html_report;
 mod package;
 mod platform;
-#[cfg_attr(not(test), allow(dead_code))]
 mod plots;
 mod run;
 mod scenes;
@@ -32,6 +29,8 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Pack the default scene, drive it over a ship motion and report under target/demo
+    Demo(demo::Args),
     /// Pack a scene as target/fmu/NAME.fmu
     Package(package::Args),
     /// Drive a packed FMU over a series of inputs and write its outputs as CSV
@@ -57,6 +56,7 @@ fn main() -> ExitCode {
         }
     };
     let outcome = match cli.command {
+        Command::Demo(args) => demo::run(args),
         Command::Package(args) => package::run(args),
         Command::Run(args) => run::run(args),
         Command::Scenes(args) => scenes::run(args),

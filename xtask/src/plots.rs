@@ -33,6 +33,9 @@ pub const PALETTE: [Colour; 6] = [
     RGBColor(0x56, 0xB4, 0xE9),
 ];
 
+/// A colour for what is only there to compare with.
+pub const SOFT: Colour = RGBColor(0xA9, 0xB3, 0xBD);
+
 /// The colour of water.
 pub const WATER: Colour = RGBColor(0x3B, 0x8E, 0xC2);
 
