@@ -8,6 +8,7 @@ use fairlead::scene::file::SceneFile;
 use fairlead::sim::{Channel, Inputs, Simulation};
 use fairlead::system::{Matrices, Ramp, System};
 use nalgebra::{DMatrix, Vector3};
+use std::f64::consts::PI;
 
 /// A cable and its mesh; the rest of a scene is written as TOML.
 #[derive(Clone, Copy, Debug)]
@@ -87,6 +88,24 @@ pub fn channel(x: [f64; 3]) -> Channel {
 /// A constant force on the body.
 pub fn pull(force: [f64; 3]) -> Inputs {
     Inputs { body_force: force.map(|value| Channel { value, ..Channel::default() }), ..Inputs::default() }
+}
+
+/// s(t) A sin(2πt/T), s a half-cosine ramp over `ramp` seconds, with two derivatives.
+fn heave(t: f64, amplitude: f64, period: f64, ramp: f64) -> [f64; 3] {
+    let k = PI / ramp;
+    let s = if t < ramp { [0.5 * (1.0 - (k * t).cos()), 0.5 * k * (k * t).sin(), 0.5 * k * k * (k * t).cos()] } else { [1.0, 0.0, 0.0] };
+    let w = 2.0 * PI / period;
+    let h = [(w * t).sin(), w * (w * t).cos(), -w * w * (w * t).sin()].map(|x| amplitude * x);
+    [s[0] * h[0], s[1] * h[0] + s[0] * h[1], s[2] * h[0] + 2.0 * s[1] * h[1] + s[0] * h[2]]
+}
+
+/// The ship heaves; the ramp takes two periods.
+pub fn heaving(amplitude: f64, period: f64) -> impl Fn(f64) -> Inputs {
+    move |t| {
+        let mut inputs = Inputs { ship: [channel([0.0; 3]); 6], ..Inputs::default() };
+        inputs.ship[2] = channel(heave(t, amplitude, period, 2.0 * period));
+        inputs
+    }
 }
 
 /// The system of a scene in equilibrium under a constant force on the body, and its shape.
