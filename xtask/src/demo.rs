@@ -25,6 +25,9 @@ use std::{env, fs, thread};
 #[derive(clap::Args)]
 pub struct Args {}
 
+/// What the winch is told.
+const COMMAND: [&str; 2] = ["winch.setpoint", "winch.setpoint_rate"];
+
 /// Communication step, s.
 const STEP: f64 = 0.01;
 
@@ -66,9 +69,10 @@ pub fn run(_args: Args) -> Result<()> {
     let folder = target_folder().join("demo");
     let data = data(&fmu, &sea, &path, compensated, &held)?;
     publish(&folder, |folder| {
-        save(&folder.join("motion.csv"), &motion.to_csv())?;
-        save(&folder.join("results.csv"), &csv(&data.times, &data.columns))?;
-        save(&folder.join("results-winch-held.csv"), &csv(&data.times, &held.columns))?;
+        let given = HEADER[1..].iter().chain(&COMMAND).copied();
+        save(&folder.join("motion.csv"), &csv(&data.times, &data.columns, given))?;
+        save(&folder.join("results.csv"), &csv(&data.times, &data.columns, data.columns.keys().map(String::as_str)))?;
+        save(&folder.join("results-winch-held.csv"), &csv(&data.times, &held.columns, held.columns.keys().map(String::as_str)))?;
         demo_report::write(&data, folder)
     })?;
     for (what, value) in demo_report::findings(&data) {
@@ -105,7 +109,7 @@ fn simulate(fmu: &Fmu, motion: &Motion, winch: Winch) -> Result<Run> {
     let times = &motion.times;
     let end = times[times.len() - 1];
     let mut ship = Inputs::new(fmu, HEADER[1..].iter().copied())?;
-    let mut command = Inputs::new(fmu, ["winch.setpoint", "winch.setpoint_rate"].into_iter())?;
+    let mut command = Inputs::new(fmu, COMMAND.into_iter())?;
     let instance = fmu.instantiate("demo")?;
     instance.setup(None, times[0], Some(end))?;
     instance.enter_initialization()?;
@@ -152,7 +156,7 @@ fn simulate(fmu: &Fmu, motion: &Motion, winch: Winch) -> Result<Run> {
     for (i, name) in HEADER[1..].iter().enumerate() {
         columns.insert((*name).to_owned(), (0..times.len()).map(|row| motion.row(row)[i]).collect());
     }
-    for (i, name) in ["winch.setpoint", "winch.setpoint_rate"].iter().enumerate() {
+    for (i, name) in COMMAND.iter().enumerate() {
         columns.insert((*name).to_owned(), (0..times.len()).map(|row| setpoint(row)[i]).collect());
     }
     Ok(Run { times: times.clone(), columns, start, calls, drum, waterline })
@@ -309,15 +313,15 @@ fn compiler() -> Option<String> {
     text.lines().next().filter(|line| line.starts_with("rustc")).map(str::to_owned)
 }
 
-/// Columns under a header that begins with `time`; numbers read back to the same bits.
-fn csv(times: &[f64], columns: &BTreeMap<String, Vec<f64>>) -> String {
-    let names: Vec<_> = columns.keys().map(String::as_str).collect();
+/// The named columns after `time`; numbers read back to the same bits.
+fn csv<'a>(times: &[f64], columns: &BTreeMap<String, Vec<f64>>, names: impl Iterator<Item = &'a str>) -> String {
+    let (names, values): (Vec<&str>, Vec<&Vec<f64>>) = names.filter_map(|name| Some((name, columns.get(name)?))).unzip();
     let mut text = format!("time,{}\n", names.join(","));
     for (row, time) in times.iter().enumerate() {
-        // Writing to a String cannot fail.
-        let _ = write!(text, "{time}");
-        for values in columns.values() {
-            let _ = write!(text, ",{}", values[row]);
+        // Writing to a String cannot fail. `{:?}` is the shortest text that reads back exactly, with an exponent where that is shorter.
+        let _ = write!(text, "{time:?}");
+        for column in &values {
+            let _ = write!(text, ",{:?}", column[row]);
         }
         text.push('\n');
     }
@@ -381,9 +385,9 @@ mod tests {
     #[test]
     fn exact_csv_has_a_column_a_variable() {
         let columns = BTreeMap::from([("b.x".to_owned(), vec![1.0, 0.1 + 0.2]), ("a".to_owned(), vec![0.0, -1e-20])]);
-        let text = csv(&[0.0, 0.01], &columns);
+        let text = csv(&[0.0, 0.01], &columns, ["a", "b.x", "not there"].into_iter());
         let mut lines = text.lines();
-        assert_eq!((lines.next(), lines.next()), (Some("time,a,b.x"), Some("0,0,1")));
+        assert_eq!((lines.next(), lines.next()), (Some("time,a,b.x"), Some("0.0,0.0,1.0")));
         let last: Vec<f64> = lines.next().unwrap().split(',').map(|field| field.parse().unwrap()).collect();
         assert_eq!(last, [0.01, -1e-20, 0.1 + 0.2]);
     }

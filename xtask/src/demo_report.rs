@@ -163,7 +163,7 @@ struct Figure {
 fn sections(data: &DemoData) -> [(&'static str, Vec<Figure>); 5] {
     let some = |figures: Vec<Option<Figure>>| figures.into_iter().flatten().collect();
     [
-        ("The cable", some(vec![side_view(data)])),
+        ("The cable", some(vec![side_view(data), drum_view(data)])),
         ("Ship and winch", some(vec![ship_motion(data), winch(data)])),
         ("What the winch is good for", some(vec![heave(data), body_path(data)])),
         ("Forces", some(vec![tension(data), close_up(data)])),
@@ -330,38 +330,62 @@ fn solver(data: &DemoData) -> Option<Figure> {
 
 /// The cable seen from starboard at instants through the greatest swing of the ship, with the drum and the water.
 fn side_view(data: &DemoData) -> Option<Figure> {
+    let chart = Chart { equal_aspect: true, ..Chart::new("Side view of the cable", "x, m", vec![cable_panel(data, f64::INFINITY, 1)?]) };
+    let caption = "The drum (circle, at the top right), the cable and the body at its end, seen from starboard in the inertial frame and to scale, \
+                   but for the dot that marks the body. The first line is the calm, the others lie in the ship's greatest swing from a trough to the \
+                   next crest: the drum rises by centimetres, the body hardly moves. The current flows towards \u{2212}x and fades with depth.";
+    Some(Figure { file: "side-view", chart, caption: caption.to_owned() })
+}
+
+/// The same about the drum.
+fn drum_view(data: &DemoData) -> Option<Figure> {
+    let reach = 5.0 * data.drum?.radius;
+    let chart = Chart { equal_aspect: true, ..Chart::new("Side view about the drum", "x, m", vec![cable_panel(data, reach, 2)?]) };
+    let caption = "Trough, mean and crest from the figure above, about the drum. The cable is fixed to the drum at the end of the spoke, lies on it and leaves it where its \
+                   stiffness against bending lets it. While the ship rises, the drum turns so as to pay out. Drawn through the FMU's output \
+                   points, on the drum along its surface.";
+    Some(Figure { file: "drum-view", chart, caption: caption.to_owned() })
+}
+
+/// Cable, drum, body and water at every `stride`th of the instants, as far as they are within `reach` of the drum's axis. The calm is shown
+/// with stride 1 only.
+fn cable_panel(data: &DemoData, reach: f64, stride: usize) -> Option<Panel> {
     let points = (1..).take_while(|k| data.columns.contains_key(&format!("cable.point[{k}].x"))).count();
     if points < 2 {
         return None;
     }
+    let near = reach.is_finite();
     let mut panel = Panel::new("z, m", Vec::new());
-    if let Some(y) = data.waterline {
+    if let Some(y) = data.waterline.filter(|_| !near) {
         panel.marks.push(Mark::Level { y, label: "water surface".to_owned(), colour: WATER });
     }
     let rows = instants(data);
-    for (i, &row) in rows.iter().enumerate() {
+    let shown = |i: usize| stride == 1 || i % stride == 1;
+    for (i, &row) in rows.iter().enumerate().filter(|(i, _)| shown(*i)) {
         let colour = sequential(if rows.len() > 1 { i as f64 / (rows.len() - 1) as f64 } else { 0.0 });
         let cable: Vec<(f64, f64)> = (1..=points)
             .filter_map(|k| Some((data.at(&format!("cable.point[{k}].x"), row)?, data.at(&format!("cable.point[{k}].z"), row)?)))
             .collect();
         let mut line = cable.clone();
+        let mut centre = (0.0, 0.0);
         if let Some(drum) = data.drum {
-            let centre = drum_centre(data, drum, row);
+            centre = drum_centre(data, drum, row);
             panel.marks.push(Mark::Circle { centre, radius: drum.radius, colour });
             line = wound(&cable, centre, drum);
+            let spoke = Series { points: vec![centre, cable[0]], ..Series::new("", &[], &[], colour) };
+            panel.series.push(spoke.width(1.0));
         }
         let end = data.at("body.x", row).zip(data.at("body.z", row)).or(cable.last().copied());
-        if let Some(centre) = end {
+        if let Some(centre) = end.filter(|_| !near) {
             panel.marks.push(Mark::Dot { centre, radius: 4.5, colour });
         }
-        let label = format!("{} s", rounded(data.times[row]));
-        panel.series.push(Series { points: smoothed(&line), ..Series::new(&label, &[], &[], colour) }.width(1.7));
+        let time = format!("{:.2} s", data.times[row]);
+        let label = if i == 0 { format!("{time} (calm)") } else { time };
+        let mut curve = smoothed(&line);
+        curve.retain(|p| (p.0 - centre.0).hypot(p.1 - centre.1) <= reach);
+        panel.series.push(Series { points: curve, ..Series::new(&label, &[], &[], colour) }.width(1.7));
     }
-    let chart = Chart { equal_aspect: true, ..Chart::new("Side view of the cable", "x, m", vec![panel]) };
-    let caption = "The drum (circle, at the top right), the cable and the body at its end in the inertial frame, to scale but for the dot that marks \
-                   the body. In the calm, and at instants through the ship's greatest swing: the drum goes down and up by centimetres, the body \
-                   hardly moves. The current flows towards \u{2212}x. Drawn as a smooth curve through the FMU's output points.";
-    Some(Figure { file: "side-view", chart, caption: caption.to_owned() })
+    Some(panel)
 }
 
 /// Rows for the side view: the start, and five from the deepest trough of the ship's greatest swing to the crest after it (or, without a
@@ -663,7 +687,7 @@ mod tests {
         let html = std::fs::read_to_string(dir.join("index.html")).unwrap();
         assert!(!html.contains("NaN") && !html.contains("src=") && !html.contains("href="));
         assert!(html.contains("48.6 \u{d7}"), "60 s in 1.234 s");
-        for file in ["side-view", "ship-motion", "winch", "heave", "tension", "close-up", "body", "body-path", "solver"] {
+        for file in ["side-view", "drum-view", "ship-motion", "winch", "heave", "tension", "close-up", "body", "body-path", "solver"] {
             let svg = std::fs::read_to_string(dir.join(format!("{file}.svg"))).unwrap();
             assert!(html.contains(&svg), "{file}");
             assert!(svg.len() < 400_000, "{file}: {} bytes", svg.len());

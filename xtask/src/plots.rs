@@ -235,7 +235,7 @@ impl Chart {
                 }
             }
             // To scale, both axes get the same step.
-            let spacing = if self.equal_aspect { (78.0, 78.0) } else { (85.0, (place.height / 8.0).max(38.0)) };
+            let spacing = if self.equal_aspect { (78.0, 78.0) } else { (85.0, (place.height / 8.0).max(22.0)) };
             let x_ticks = ticks(x_range, plot_width / spacing.0);
             for tick in &x_ticks.values {
                 pen.line(&[(to_x(*tick), top), (to_x(*tick), bottom)], GRID.to_rgba(), 1.0);
