@@ -3,6 +3,7 @@
 //! r(p, t) = r_b(t) + u(p, t), where r_b is the first node's prescribed motion. So u(0) = 0 exactly at every time, the boundary's motion enters
 //! only as the uniform inertia −M r̈_b and through the velocities that drag and contact see, and a ship far from the origin costs no digits.
 
+mod contact;
 mod elements;
 mod environment;
 mod matrices;
@@ -28,8 +29,6 @@ use crate::ship::ShipDrive;
 use crate::sim::Channel;
 use crate::winch::{DrumGeometry, WinchDrive};
 
-/// Contact points per element, at the middles of equal intervals.
-const CONTACT_POINTS: usize = 12;
 /// Stiffness of a `tangent` end over EI/L of the first element: its slope is held to about one over this.
 const CLAMP: f64 = 1e4;
 
@@ -283,55 +282,6 @@ impl System {
         }
     }
 
-    /// Line contact with the drum.
-    fn contact<const TANGENT: bool>(&mut self, env: &Environment, u: &[f64], w: &[f64], m: &mut Matrices) {
-        let FirstEnd::Winch { geometry, contact: Some(drum), .. } = &self.first else { return };
-        let centre = geometry.centre;
-        let rotation: Mat3<f64> = std::array::from_fn(|i| std::array::from_fn(|j| env.frame.rotation[i][j].0[0]));
-        for (e, &l) in self.chain.lengths.iter().enumerate() {
-            self.contact_forces[e] = [0.0; 12];
-            if !near(drum, &centre, env, u, e, l) {
-                continue;
-            }
-            for k in 0..CONTACT_POINTS {
-                let x = (k as f64 + 0.5) / CONTACT_POINTS as f64;
-                let point = ElementPoint::new(u, w, e, l, x);
-                let r: Vec3<f64> = std::array::from_fn(|c| point.u[c] + env.base[c].0[0]);
-                let s = env.frame.locate(&r);
-                let s: Vec3<f64> = std::array::from_fn(|c| s[c] - centre[c]);
-                if drum.gap(&s) >= 0.0 {
-                    continue;
-                }
-                let v = if self.frozen {
-                    [0.0; 3]
-                } else {
-                    env.frame.relative_velocity(&r, &std::array::from_fn(|c| point.w[c] + env.base[c].0[1]))
-                };
-                let Some(load) = drum.load(&s, &v) else { continue };
-                let wl = l / CONTACT_POINTS as f64;
-                let f = env.frame.to_world(&load.f.map(|x| wl * x));
-                point.push(&f, &mut self.contact_forces);
-                if TANGENT {
-                    // v depends on s too: ∂ṡ/∂s = −[ω]×; its part is R dv (ṘᵀR) Rᵀ.
-                    let turn: Mat3<f64> = std::array::from_fn(|i| {
-                        std::array::from_fn(|j| (0..3).map(|k| env.frame.rotation[k][i].0[1] * env.frame.rotation[k][j].0[0]).sum())
-                    });
-                    let mut ds = load.ds;
-                    if !self.frozen {
-                        for i in 0..3 {
-                            for j in 0..3 {
-                                ds[i][j] += (0..3).map(|k| load.dv[i][k] * turn[k][j]).sum::<f64>();
-                            }
-                        }
-                    }
-                    let by_r = sandwich(&rotation, &ds, wl);
-                    let by_v = sandwich(&rotation, &load.dv, wl);
-                    point.couple(Some(&by_r), None, (drum.law.damping > 0.0).then_some(&by_v), None, m);
-                }
-            }
-        }
-    }
-
     /// The body at the last node and the clamp at the first.
     fn ends<const TANGENT: bool>(&mut self, env: &Environment, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64], m: &mut Matrices) {
         let n = self.nodes() - 1;
@@ -417,24 +367,6 @@ impl System {
         self.evaluate::<false>(&env, u, w, Some(a), f, &mut none);
         self.matrices = none;
     }
-}
-
-/// Whether element `e` can touch the drum: its Bézier polygon's ball against the cylinder.
-fn near(drum: &Drum, centre: &Vec3<f64>, env: &Environment, u: &[f64], e: usize, l: f64) -> bool {
-    let q = gather(u, e);
-    let third = l / 3.0;
-    let polygon: [Vec3<f64>; 4] =
-        [q[0], std::array::from_fn(|c| q[0][c] + third * q[1][c]), std::array::from_fn(|c| q[2][c] - third * q[3][c]), q[2]];
-    let middle: Vec3<f64> = std::array::from_fn(|c| 0.5 * (q[0][c] + q[2][c]));
-    let reach = polygon.iter().map(|p| (0..3).map(|c| (p[c] - middle[c]).powi(2)).sum::<f64>()).fold(0.0, f64::max).sqrt();
-    let s = env.frame.locate(&std::array::from_fn(|c| middle[c] + env.base[c].0[0]));
-    drum.gap(&std::array::from_fn(|c| s[c] - centre[c])) < reach
-}
-
-/// w R b Rᵀ.
-fn sandwich(rotation: &Mat3<f64>, b: &Mat3<f64>, w: f64) -> Mat3<f64> {
-    let left: Mat3<f64> = std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| rotation[i][k] * b[k][j]).sum::<f64>() * w));
-    std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| left[i][k] * rotation[j][k]).sum()))
 }
 
 impl Problem for System {
