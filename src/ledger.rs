@@ -1,6 +1,8 @@
 //! Work and energy in the frame that moves with the cable's first node, where its support does no work:
 //!
-//!     d/dt (½ wᵀMw + U_elastic) = w·F + dU_elastic/dt + ½ wᵀṀw
+//! ```text
+//! d/dt (½ wᵀMw + U_elastic) = w·F + dU_elastic/dt + ½ wᵀṀw
+//! ```
 //!
 //! with F all forces, the elastic ones and the frame's inertia included. What remains of the difference is the integrator's doing.
 

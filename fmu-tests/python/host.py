@@ -66,6 +66,7 @@ class Instance:
         callbacks = fmi2.fmi2CallbackFunctions()
         callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(log)
         self.slave.instantiate(callbacks=callbacks, loggingOn=logging)
+        self.component = self.slave.component
 
     def __enter__(self):
         return self
@@ -74,9 +75,9 @@ class Instance:
         self.free()
 
     def free(self):
-        if self.slave.component is not None:
-            self.slave.fmi2FreeInstance(self.slave.component)
-            self.slave.component = None
+        component, self.component = getattr(self, "component", None), None
+        if component is not None:
+            self.slave.fmi2FreeInstance(component)
 
     __del__ = free
 

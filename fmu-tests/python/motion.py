@@ -21,6 +21,16 @@ def wave(t):
     return pose, rate, acceleration
 
 
+def rising(t):
+    """A swell that begins at rest, with neither velocity nor acceleration: a (1 - cos w t)^2 / 4."""
+    pose, rate, acceleration = [], [], []
+    for a, w, _ in WAVES:
+        pose.append(a / 4 * (1.5 - 2 * math.cos(w * t) + 0.5 * math.cos(2 * w * t)))
+        rate.append(a / 4 * w * (2 * math.sin(w * t) - math.sin(2 * w * t)))
+        acceleration.append(a / 4 * w * w * (2 * math.cos(w * t) - 2 * math.cos(2 * w * t)))
+    return pose, rate, acceleration
+
+
 def parabola(t):
     """A motion that input derivatives up to the second describe without error."""
     rates = [0.02, -0.01, 0.015, 0.05, -0.04, 0.08]

@@ -48,7 +48,9 @@ def body_force(s):
 
 
 def no_body(s):
+    """Without a weight at its end the cable streams in the current; it starts straight."""
     del s["body"]
+    s["initial"] = {"state": "straight", "direction": [0.0, 0.0, -1.0]}
 
 
 def tangent(s):

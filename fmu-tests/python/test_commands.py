@@ -47,7 +47,7 @@ BAD_SCENES = {
     "number for text": (number("strain", "1"), ["cable.strain", "expected", "engineering", "green"]),
     "a choice misspelt": (number("strain", '"engeneering"'), ["cable.strain", "engeneering", 'did you mean "engineering"?']),
     "two components": (changed("position = [0.0, 0.0, -0.01735]", "position = [0.0, 0.0]"), ["winch.position", "expected", "[x, y, z]"]),
-    "a table as a number": (re.sub(r"(?m)^\[outputs\]\npoints = 25", "outputs = 25", FLUME.replace("[outputs]\npoints = 25", "")) + "", []),
+    "a number as a table": (changed("gravity = ", "outputs = 25\ngravity = ").replace("[outputs]\npoints = 25", ""), ["outputs", "[outputs]"]),
     "half an element": (re.sub(r"(?s)regions = \[.*?\n\]", "elements = 2.5", FLUME), ["mesh.elements", "2.5", "whole number"]),
     "missing table": (re.sub(r"(?ms)^\[mesh\].*?(?=^\[)", "", FLUME), ["mesh", "missing", "[mesh]"]),
     "missing key": (changed("diameter = 0.45e-3\n", ""), ["cable.diameter", "missing", "expected a number > 0 in m"]),
@@ -61,13 +61,11 @@ BAD_SCENES = {
     "a name that C refuses": (changed('name = "flume"', 'name = "my flume"'), ["name", "my flume", "identifier"]),
     "no TOML": ("this is not\na scene", ["line 1", "TOML"]),
     "a TOML that breaks off": (FLUME + "\n[solver\n", ["line", "TOML"]),
-    "a key twice": (changed("gravity = 9.81", "gravity = 9.81\ngravity = 9.82"), ["gravity", "TOML"]),
+    "a key twice": (changed("gravity = 9.81", "gravity = 9.81\ngravity = 9.82"), ["line 10", "duplicate key"]),
     "empty": ("", ["name", "cable", "mesh", "missing"]),
     "no text": (b"\x80\x81\x00\xff", ["UTF-8"]),
     "several faults at once": (number("EA", "-1.0").replace("density", "densite"), ["cable.EA", "fluid.densite", "fluid.density"]),
 }
-BAD_SCENES.pop("a table as a number")
-BAD_SCENES["a number as a table"] = (FLUME.replace("[outputs]\npoints = 25", "") .replace("gravity = ", "outputs = 25\ngravity = "), ["outputs", "[outputs]"])
 
 
 @pytest.mark.parametrize("case", BAD_SCENES)
@@ -165,6 +163,7 @@ BAD_FMUS = [
     "no zip", "half a zip", "empty", "no description", "XML that breaks off", "no XML", "no UTF-8", "another version", "no reference",
     "no library", "another GUID", "a scene that was changed", "no scene", "a broken scene",
 ]
+WELL_FORMED = ["another GUID", "a scene that was changed", "no scene", "a broken scene"]
 
 
 @pytest.mark.parametrize("case", BAD_FMUS)
@@ -179,7 +178,8 @@ def test_exact_a_bad_fmu_is_refused(flume, xtask, tmp_path, case):
     refused(xtask("run", path, "--stop", "0.1", "--output", out), *words)
     assert [p.name for p in tmp_path.iterdir()] == ["bad one.fmu"]
     done = xtask("validate", path)
-    assert done.returncode == 1, done.stdout
+    # The validator looks at form and runs no code, so it cannot know what only the FMU itself would refuse.
+    assert done.returncode == (0 if case in WELL_FORMED else 1), done.stdout
     no_rust(done.stdout + done.stderr)
     assert "bad one.fmu" in done.stdout + done.stderr
 
@@ -279,7 +279,7 @@ def test_exact_bad_options_are_refused(flume, xtask, tmp_path, case):
     options, words = BAD_OPTIONS[case]
     stop = [] if "--stop" in options else ["--stop", "0.1"]
     done = xtask("run", flume.path, "--output", tmp_path / "result.csv", *stop, *options)
-    assert done.returncode != 0
+    assert done.returncode == 1
     for word in words:
         assert word in done.stderr, done.stderr
     no_rust(done.stderr)
@@ -304,7 +304,7 @@ def test_exact_a_run_that_fails_keeps_the_old_results_and_says_where_the_new_one
 @pytest.mark.parametrize("arguments", [[], ["dance"], ["package"], ["run"], ["package", "flume", "--fast"]])
 def test_exact_wrong_command_lines_get_help_not_success(xtask, arguments):
     done = xtask(*arguments)
-    assert done.returncode != 0
+    assert done.returncode == 1
     assert "Usage" in done.stderr
     no_rust(done.stderr)
 
@@ -329,7 +329,8 @@ def test_cross_our_own_importer_agrees_with_fmpy(flume, xtask, tmp_path):
     inputs, out = swell(flume, tmp_path / "swell.csv"), tmp_path / "out.csv"
     assert xtask("run", flume.path, "--input", inputs, "--output", out, "--step", "0.01").returncode == 0
     names = inputs.read_text().splitlines()[0].split(",")
-    signals = np.genfromtxt(inputs, delimiter=",", skip_header=1, dtype=[(n, float) for n in names])
+    rows = np.loadtxt(inputs, delimiter=",", skiprows=1)
+    signals = np.array([tuple(row) for row in rows], dtype=[(n, float) for n in names])
     record = ["winch.tension", "body.x", "body.z"]
     theirs = fmpy.simulate_fmu(str(flume.path), input=signals, stop_time=1.0, output_interval=0.01, output=record)
     lines = list(csv.reader(out.open()))

@@ -6,7 +6,7 @@ import motion
 import numpy as np
 import pytest
 import scenes
-from host import OK, WARNING, bits, finite, status
+from host import OK, WARNING, Packed, bits, finite, status
 
 VECTOR = ("x", "y", "z")
 
@@ -64,7 +64,7 @@ def test_exact_reset_equals_fresh(fmus, name):
 
 
 def test_exact_the_start_time_is_only_an_origin(flume):
-    """Nothing in a scene depends on time itself; sub-steps may differ by rounding of t + h, results by its effect on them."""
+    """Nothing in a scene depends on time itself, but the rounding of t + h may change a sub-step, as it may in any run."""
     results = []
     for origin in (0.0, -3.0, 1024.0):
         with flume.started(time=origin) as i:
@@ -75,8 +75,8 @@ def test_exact_the_start_time_is_only_an_origin(flume):
             results.append(i.get(["winch.tension", "body.x", "body.y", "body.z"]))
     for result in results[1:]:
         for name, value in results[0].items():
-            # 1024 s leaves 1e-13 s of a time; speeds of 0.1 m/s, and rates of tension of 1 N/s against 0.01 N.
-            assert result[name] == pytest.approx(value, rel=1e-8, abs=1e-11), name
+            # A different choice of sub-steps is worth less than solver.tolerance = 1e-3.
+            assert result[name] == pytest.approx(value, rel=1e-3, abs=1e-5), name
 
 
 # Steps
@@ -145,8 +145,8 @@ def test_exact_input_derivatives_are_those_of_the_velocity_inputs(fmus):
     assert [bits(row) for row in rows] == [bits(row) for row in expected]
 
 
-def send_derivatives(instance, t, orders):
-    pose, rate, acceleration = motion.wave(t)
+def send_derivatives(instance, t, orders, ship=motion.wave):
+    pose, rate, acceleration = ship(t)
     instance.set(dict(zip(motion.POSE, pose)))
     if orders >= 1:
         instance.derivatives(1, dict(zip(motion.POSE, rate)))
@@ -161,22 +161,18 @@ def test_exact_input_derivatives_improve_a_pose_only_run(fmus):
     errors = []
     for orders in (0, 1, 2):
         rows = pose_run(fmus["pose"], 0.05, 40, orders)
-        errors.append(max(abs(a[n] - b[n]) for a, b in zip(rows[10:], reference[10:]) for n in record))
+        errors.append(max(abs(a[n] - b[n]) for a, b in zip(rows, reference) for n in record))
     # The reconstruction gains an order with each derivative; at this step the first is worth a factor of three or more.
     assert errors[1] < errors[0] / 3 and errors[2] < errors[0] / 3, errors
-    # Even poses alone follow the motion, whose amplitude is some 20 mm at the drum and body, within a tenth.
+    # Even poses alone follow the motion, of some 20 mm, within a tenth.
     assert errors[0] < 2e-3, errors
 
 
 def pose_run(fmu, h, steps, orders):
     rows = []
-    with fmu.instance() as i:
-        i.slave.setupExperiment()
-        i.slave.enterInitializationMode()
-        send_derivatives(i, 0.0, orders)
-        i.slave.exitInitializationMode()
+    with fmu.started() as i:
         for k in range(steps):
-            send_derivatives(i, k * h, orders)
+            send_derivatives(i, k * h, orders, motion.rising)
             i.step(k * h, h)
             rows.append(i.get(["body.x", "body.y", "body.z"]))
     return rows
@@ -250,11 +246,11 @@ def test_exact_the_anchor_holds_the_first_node(fmus):
 
 def test_exact_the_last_point_is_the_body(flume):
     with flume.started() as i:
-        for _ in range(2):
+        for k in range(2):
             values = i.everything()
             # Both are the last node's position.
             assert np.abs(vector(values, "cable.point[25]") - vector(values, "body")).max() < 1e-12
-            sail(i, 5)
+            sail(i, 5, first=5 * k)
 
 
 def test_exact_at_rest_the_forces_are_in_balance(fmus):
@@ -270,9 +266,13 @@ def test_exact_at_rest_the_forces_are_in_balance(fmus):
         if stem == "winch":
             assert vector(values, "ship.force") == pytest.approx(vector(values, "winch.force"), abs=1e-15)
             assert vector(values, "ship.force_world") == pytest.approx(vector(values, "winch.force"), abs=1e-15)
-            # About the ship's origin: the pull hangs half a turn from the first node, at x = -(r + d/2).
+            # The moment of all weights about the ship's origin. The cable's is summed over 25 points, four of them on the drum, where a
+            # trapezoid is wrong by some per cent of an eighth of the whole.
+            x = np.array([values[f"cable.point[{k}].x"] for k in range(1, 26)])
+            line = s["cable"]["mass_per_length"] * s["cable"]["length"] * (x.sum() - (x[0] + x[-1]) / 2) / 24
             moment = vector(values, "ship.moment")
-            assert moment[1] == pytest.approx(-DRUM["radius"] * weight, rel=0.02), "bending stiffness moves the cable by a per cent"
+            expected = s["gravity"] * (line + s["body"]["mass"] * values["body.x"])
+            assert moment[1] == pytest.approx(expected, rel=0.01) and expected < 0
             assert moment[0] == pytest.approx(0.0, abs=1e-9) and moment[2] == pytest.approx(0.0, abs=1e-9)
         else:
             assert values["anchor.tension"] == pytest.approx(weight, rel=1e-6)
@@ -283,8 +283,10 @@ def test_exact_signs_of_the_winch(flume, fmus):
     with flume.started() as i:
         values = i.everything()
         assert values["winch.tension"] > 0 and values["body.tension"] > 0
-        # Frictionless contact, and the moment of the pull about the drum's axis; the rest is the pinned end's bending.
-        assert values["winch.torque"] == pytest.approx(-DRUM["radius"] * values["winch.tension"], rel=0.02)
+        # The pull turns the drum towards paying out. Its arm is the drum's radius and what bending stiffness lifts the cable off it:
+        # at most sqrt(EI/T) = 18 mm for the 0.009 N here.
+        arm = -values["winch.torque"] / values["winch.tension"]
+        assert DRUM["radius"] < arm < DRUM["radius"] + 0.018
         assert values["winch.force.z"] < 0 and values["winch.force.x"] < 0, "the current drags towards -x"
         assert values["winch.angle"] == pytest.approx(math.pi / 2, abs=1e-12) and values["winch.rate"] == 0.0
         assert values["winch.payout"] == 0.0
@@ -297,7 +299,7 @@ def test_exact_signs_of_the_winch(flume, fmus):
     with fmus["mirrored_winch"].started() as i:
         values = i.everything()
         assert values["winch.tension"] > 0
-        assert values["winch.torque"] == pytest.approx(DRUM["radius"] * values["winch.tension"], rel=0.02)
+        assert DRUM["radius"] < values["winch.torque"] / values["winch.tension"] < DRUM["radius"] + 0.018
         i.run(100, 0.02, lambda t: {"winch.setpoint": -math.pi / 2 + 1.0})
         assert i["winch.payout"] == pytest.approx(DRUM["radius"], rel=1e-3)
 
@@ -365,3 +367,11 @@ def test_exact_every_scene_runs(fmus, name):
     assert all(finite(row) for row in rows)
     assert all(row["status.code"] == 0 for row in rows), [row["status.message"] for row in rows if row["status.code"]][:1]
     assert all(row["cable.tension_max"] >= row["cable.tension_min"] for row in rows)
+
+
+@pytest.mark.xfail(strict=True, reason="the static solver does not find the rest of a cable that only the current holds taut")
+def test_exact_a_cable_without_a_body_finds_its_rest(xtask, tmp_path):
+    s = scenes.flume()
+    del s["body"]
+    assert xtask("package", scenes.write(tmp_path / "s.toml", s), "--out", tmp_path / "s.fmu").returncode == 0
+    Packed(tmp_path / "s.fmu", tmp_path / "s").started().free()

@@ -226,6 +226,7 @@ fn exact_steps_allocate_nothing() {
         println!("{count} allocations in 100 steps ({} sub-steps)", sim.outputs().solver.steps);
         assert_eq!(count, 0);
         // The counter does count.
+        let before = ALLOCATIONS.get();
         drop(std::hint::black_box(vec![1u8; 100]));
         assert_eq!(ALLOCATIONS.get() - before, 1);
     }

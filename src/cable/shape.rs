@@ -1,7 +1,9 @@
 //! Shape functions of the two-node, 12-coordinate cable element (Gerstmayr & Shabana, Nonlinear Dynamics 45 (2006) 109-130):
 //!
-//!     r(p) = s1 r(0) + s2 r_p(0) + s3 r(L) + s4 r_p(L),   ξ = p/L
-//!     s1 = 1 − 3ξ² + 2ξ³,  s2 = L(ξ − 2ξ² + ξ³),  s3 = 3ξ² − 2ξ³,  s4 = L(ξ³ − ξ²)
+//! ```text
+//! r(p) = s1 r(0) + s2 r_p(0) + s3 r(L) + s4 r_p(L),   ξ = p/L
+//! s1 = 1 − 3ξ² + 2ξ³,  s2 = L(ξ − 2ξ² + ξ³),  s3 = 3ξ² − 2ξ³,  s4 = L(ξ³ − ξ²)
+//! ```
 
 use crate::math::lanes::{Real, Vec3};
 

@@ -3,7 +3,9 @@
 //!
 //! In the second-order form. With y = (u, w), stage increments (P_i, W_i), g = γh, s_i = w_i + Σ c_ij P_j / h:
 //!
-//!     (M + g D + g² K) W_i = g [ F(t_i, u_i, w_i) + M Σ c_ij W_j / h + γ_i h ∂F/∂t − g K s_i ],   P_i = g (W_i + s_i)
+//! ```text
+//! (M + g D + g² K) W_i = g [ F(t_i, u_i, w_i) + M Σ c_ij W_j / h + γ_i h ∂F/∂t − g K s_i ],   P_i = g (W_i + s_i)
+//! ```
 //!
 //! Where M depends on u, the accelerations a join as algebraic unknowns of 0 = F − M(u) a; eliminating them leaves the same matrix and the
 //! extra terms −(M(u_i) − M) a_i, with increments A_i = W_i/g − a_i − Σ c_ij W_j / h.

@@ -52,7 +52,7 @@ fn exact_variables_are_well_formed() {
         "cable.point[25].z",
         "status.code",
         "solver.energy_error",
-        "cable.E",
+        "cable.EA",
         "winch.position[3]",
         "mesh.regions[2].elements",
         "fluid.current.profile[1,2]",
@@ -63,7 +63,7 @@ fn exact_variables_are_well_formed() {
     ] {
         assert!(names.contains(&name.to_owned()), "{name} is missing");
     }
-    for name in ["outputs.points", "cable.EA", "winch.max_rate", "anchor.tension", "body.force.x", "load.x", "time"] {
+    for name in ["outputs.points", "cable.E", "winch.max_rate", "anchor.tension", "body.force.x", "load.x", "time"] {
         assert!(!names.contains(&name.to_owned()), "{name} should not be there");
     }
 }

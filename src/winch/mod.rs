@@ -1,6 +1,8 @@
 //! The winch drum's rotation under its position controller (thesis eq. 136):
 //!
-//!     φ̈ = k1 (φ_SP − φ) + k2 (φ̇_SP − φ̇),   |φ̈| and |φ̇| limited where the scene says so.
+//! ```text
+//! φ̈ = k1 (φ_SP − φ) + k2 (φ̇_SP − φ̇),   |φ̈| and |φ̇| limited where the scene says so.
+//! ```
 //!
 //! The drum does not feel the cable, so its motion over a communication step is known before the cable's sub-steps begin: it is integrated by
 //! the classical Runge-Kutta method in steps so fine that its error (1e-9 of a set-point change) is far below the cable's, and handed on as

@@ -13,6 +13,7 @@ mod scenes;
 mod seakeeping;
 mod series;
 mod ship_motion;
+mod test;
 mod validate;
 mod xml_tree;
 
@@ -38,6 +39,8 @@ enum Command {
     Scenes(scenes::Args),
     /// Write a 6-DOF ship motion in an irregular sea as CSV
     ShipMotion(ship_motion::Args),
+    /// Run every test: Rust's, then the Python tests of the packed FMU
+    Test(test::Args),
     /// Say what an importer would complain about
     Validate(validate::Args),
 }
@@ -58,6 +61,7 @@ fn main() -> ExitCode {
         Command::Run(args) => run::run(args),
         Command::Scenes(args) => scenes::run(args),
         Command::ShipMotion(args) => ship_motion::run(&args),
+        Command::Test(args) => test::run(args),
         Command::Validate(args) => validate::run(args),
     };
     match outcome {

@@ -23,10 +23,10 @@ pub struct Args {
     #[arg(long, value_name = "CSV")]
     output: Option<PathBuf>,
     /// End of the run, s [default: end of the input, else the FMU's default experiment]
-    #[arg(long, value_name = "T")]
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
     stop: Option<f64>,
     /// Communication step, s [default: the FMU's preferred step]
-    #[arg(long, value_name = "H")]
+    #[arg(long, value_name = "H", allow_negative_numbers = true)]
     step: Option<f64>,
     /// A parameter or an input's start value; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
