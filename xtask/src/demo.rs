@@ -408,4 +408,16 @@ mod tests {
         assert!((0.02..0.04).contains(&heave), "{heave}");
         assert_eq!(motion.states[0].pose, [0.0; 6], "the ship starts at rest");
     }
+
+    #[test]
+    fn exact_the_readme_s_scene_can_be_packed() {
+        let readme = include_str!("../../README.md");
+        let scene = readme.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("tow.toml");
+        fs::write(&path, scene).unwrap();
+        let model = fairlead::variables::Model::read(&path).unwrap();
+        assert_eq!(model.initial_scene.name, "tow");
+        fairlead::sim::Simulation::new(&model.initial_scene).unwrap();
+    }
 }

@@ -107,7 +107,7 @@ pub fn write(data: &DemoData, dir: &Path) -> Result<(), Failure> {
     };
     std::fs::create_dir_all(dir).map_err(|error| Failure(format!("{}: cannot be made: {error}", dir.display())))?;
 
-    let mut page = Page::new("fairlead: a towed body, its cable and a heave-compensating winch");
+    let mut page = Page::new("fairlead: a towed cable on a heave-compensating winch");
     page.paragraph(
         "A ship moves in an irregular sea and tows a small sphere through a current. The winch on its deck reels cable in and out so that \
          the sphere stays where it is. Every number below was computed by a packed FMU, driven through its FMI 2.0 C interface; a controller \

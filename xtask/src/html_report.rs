@@ -6,11 +6,11 @@ const STYLE: &str = "\
 :root{color-scheme:light}
 body{margin:0;background:#f4f6f8;color:#222b36;font:16px/1.55 system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue',Arial,sans-serif}
 main{max-width:940px;margin:0 auto;padding:2.5rem 1.5rem 4rem}
-h1{font-size:1.65rem;line-height:1.2;margin:0 0 .6rem}
+h1{font-size:1.6rem;line-height:1.2;margin:0 0 .6rem}
 h2{font-size:1.25rem;margin:2.4rem 0 .7rem;padding-bottom:.3rem;border-bottom:1px solid #d5dbe1}
 p{margin:.6rem 0;max-width:46rem}
 .tiles{display:flex;flex-wrap:wrap;gap:.9rem;margin:1.4rem 0}
-.tile{flex:1 1 9rem;background:#fff;border:1px solid #dde2e7;border-radius:8px;padding:.8rem 1rem}
+.tile{flex:1 1 7.5rem;background:#fff;border:1px solid #dde2e7;border-radius:8px;padding:.8rem 1rem}
 .tile b{display:block;font-size:1.45rem;line-height:1.25;font-variant-numeric:tabular-nums}
 .tile span{color:#5b6773;font-size:.86rem}
 table{border-collapse:collapse;background:#fff;border:1px solid #dde2e7;font-size:.93rem;margin:.8rem 0;min-width:55%}
