@@ -12,7 +12,9 @@ pub fn force(law: &Contact, depth: f64, rate: f64) -> (f64, f64, f64) {
     if gain <= 0.0 {
         return (0.0, 0.0, 0.0);
     }
-    let elastic = law.stiffness * depth.powf(law.exponent);
+    // The usual exponent without a logarithm.
+    let power = if law.exponent == 1.5 { depth * depth.sqrt() } else { depth.powf(law.exponent) };
+    let elastic = law.stiffness * power;
     (elastic * gain, law.exponent * elastic / depth * gain, elastic * law.damping)
 }
 

@@ -14,7 +14,11 @@ use crate::math::lanes::{Mat3, Vec3, axpy, dot, mat_vec};
 use crate::math::quadrature::GAUSS5;
 
 /// Intervals per element in the search for arcs in contact.
-const SAMPLES: usize = 8;
+const SAMPLES: usize = 4;
+
+/// Where the search begins in the first element. Its node lies on the drum's surface whatever the shape, so that ξ = 0 is a root of the gap
+/// that says nothing, of a sign that is rounding.
+const BEYOND_PIN: f64 = 1e-3;
 
 /// An element and the drum, in one place.
 struct Pair<'a> {
@@ -26,7 +30,7 @@ struct Pair<'a> {
 }
 
 /// A stretch [from, to] of ξ in contact; `moving` tells which of its ends are roots of the gap.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Arc {
     from: f64,
     to: f64,
@@ -44,6 +48,19 @@ impl Pair<'_> {
         self.drum.gap(&self.locate(&shape::interpolate(&shape::value(x, self.l), &self.u)))
     }
 
+    /// ∂gap/∂r in world axes (the outward unit normal) and dgap/dξ.
+    fn normal_and_slope(&self, x: f64) -> (Vec3<f64>, f64) {
+        let at = self.locate(&shape::interpolate(&shape::value(x, self.l), &self.u));
+        let radial = axpy(&at, -dot(&at, &self.drum.axis), &self.drum.axis);
+        let rho = dot(&radial, &radial).sqrt();
+        let e = self.env.frame.to_world(&radial.map(|c| c / rho));
+        (e, self.l * dot(&e, &shape::interpolate(&shape::slope(x, 1.0 / self.l), &self.u)))
+    }
+
+    fn slope(&self, x: f64) -> f64 {
+        self.normal_and_slope(x).1
+    }
+
     /// Whether the element can touch the drum: a ball around its Bézier polygon against the cylinder.
     fn near(&self) -> bool {
         let (q, third) = (&self.u, self.l / 3.0);
@@ -56,62 +73,65 @@ impl Pair<'_> {
         self.drum.gap(&self.locate(&middle)) < reach
     }
 
-    /// The arcs in contact, in order.
-    fn arcs(&self, mut found: impl FnMut(Arc)) {
-        let mut arc = Arc::default();
-        let (mut x0, mut g0) = (0.0, self.gap(0.0));
-        let mut touching = g0 < 0.0;
+    /// The arcs in contact, in order. Between samples an extremum of the gap is looked for where its slopes promise one, so that the cable's
+    /// touching between two samples is not missed.
+    fn arcs(&self, start: f64, mut found: impl FnMut(Arc)) {
+        let mut open: Option<f64> = None;
+        let mut cross = |x: f64| match open.take() {
+            Some(from) => found(Arc { from, to: x, moving: [from > start, true] }),
+            None => open = Some(x),
+        };
+        let (mut x0, mut g0, mut d0) = (start, self.gap(start), self.slope(start));
+        if g0 < 0.0 {
+            cross(start);
+        }
         for k in 1..=SAMPLES {
             let x1 = k as f64 / SAMPLES as f64;
-            let g1 = self.gap(x1);
+            let (g1, d1) = (self.gap(x1), self.slope(x1));
             if (g0 < 0.0) != (g1 < 0.0) {
-                let root = self.root(x0, g0, x1, g1);
-                if touching {
-                    found(Arc { to: root, moving: [arc.moving[0], true], ..arc });
-                } else {
-                    arc = Arc { from: root, to: 1.0, moving: [true, false] };
+                cross(root(|x| self.gap(x), (x0, g0), (x1, g1)));
+            } else if (d0 < 0.0) != (d1 < 0.0) && (d0 < 0.0) == (g0 >= 0.0) {
+                let x = root(|x| self.slope(x), (x0, d0), (x1, d1));
+                let g = self.gap(x);
+                if (g < 0.0) != (g0 < 0.0) {
+                    cross(root(|x| self.gap(x), (x0, g0), (x, g)));
+                    cross(root(|x| self.gap(x), (x, g), (x1, g1)));
                 }
-                touching = !touching;
             }
-            (x0, g0) = (x1, g1);
+            (x0, g0, d0) = (x1, g1, d1);
         }
-        if touching {
-            found(Arc { to: 1.0, moving: [arc.moving[0], false], ..arc });
+        if let Some(from) = open {
+            found(Arc { from, to: 1.0, moving: [from > start, false] });
         }
-    }
-
-    /// The gap's root in a bracket, by the Illinois form of the false position.
-    fn root(&self, mut a: f64, mut fa: f64, mut b: f64, mut fb: f64) -> f64 {
-        for _ in 0..60 {
-            let x = (a * fb - b * fa) / (fb - fa);
-            if !(x > a.min(b) && x < a.max(b)) || (b - a).abs() < 1e-15 {
-                break;
-            }
-            let f = self.gap(x);
-            if f == 0.0 {
-                return x;
-            }
-            if (f < 0.0) != (fb < 0.0) {
-                (a, fa) = (b, fb);
-            } else {
-                fa *= 0.5;
-            }
-            (b, fb) = (x, f);
-        }
-        b
     }
 
     /// Derivative of the root at ξ by the element's slots, −∇gap sᵢ / gap′; `None` where the cable only grazes the drum.
     fn root_rate(&self, x: f64) -> Option<[f64; 12]> {
-        let (s, sp) = (shape::value(x, self.l), shape::slope(x, 1.0 / self.l));
-        let at = self.locate(&shape::interpolate(&s, &self.u));
-        let y = dot(&at, &self.drum.axis);
-        let radial = axpy(&at, -y, &self.drum.axis);
-        let rho = dot(&radial, &radial).sqrt();
-        let e = self.env.frame.to_world(&radial.map(|c| c / rho));
-        let slope = self.l * dot(&e, &shape::interpolate(&sp, &self.u));
+        let s = shape::value(x, self.l);
+        let (e, slope) = self.normal_and_slope(x);
         (slope.abs() > 1e-9 * self.l).then(|| std::array::from_fn(|k| -s[k / 3] * e[k % 3] / slope))
     }
+}
+
+/// A root of `f` in a bracket of (x, f(x)), by the Illinois form of the false position.
+fn root(f: impl Fn(f64) -> f64, (mut a, mut fa): (f64, f64), (mut b, mut fb): (f64, f64)) -> f64 {
+    for _ in 0..60 {
+        let x = (a * fb - b * fa) / (fb - fa);
+        if !(x > a.min(b) && x < a.max(b)) || (b - a).abs() < 1e-15 {
+            break;
+        }
+        let fx = f(x);
+        if fx == 0.0 {
+            return x;
+        }
+        if (fx < 0.0) != (fb < 0.0) {
+            (a, fa) = (b, fb);
+        } else {
+            fa *= 0.5;
+        }
+        (b, fb) = (x, fx);
+    }
+    b
 }
 
 impl System {
@@ -134,7 +154,7 @@ impl System {
             if !pair.near() {
                 continue;
             }
-            pair.arcs(|arc| {
+            pair.arcs(if e == 0 { BEYOND_PIN } else { 0.0 }, |arc| {
                 let length = arc.to - arc.from;
                 // ∂Q/∂from and ∂Q/∂to of the rule, points moving along.
                 let mut by_ends = [[0.0; 12]; 2];

@@ -404,7 +404,7 @@ impl Problem for System {
             return false;
         }
         // Elastic forces do not depend on time and cancel bit by bit, so a small difference loses nothing.
-        let dt = 1e-5 * scale;
+        let dt = (1e-4 * scale).max(1e-9);
         let tally = self.tally;
         self.force(t + dt, u, w, None, f);
         self.tally = tally;
