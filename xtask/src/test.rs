@@ -23,7 +23,8 @@ const PROBE: &str = "import sys\nprint(*sys.version_info[:2])\nimport venv, ensu
 /// # Errors
 /// Names the suites that failed.
 pub fn run(_args: Args) -> Result<()> {
-    let suites: [(&str, fn() -> Result<()>); 2] = [("Rust tests", rust), ("Python tests", python)];
+    type Suite = (&'static str, fn() -> Result<()>);
+    let suites: [Suite; 2] = [("Rust tests", rust), ("Python tests", python)];
     let mut lines = Vec::new();
     let mut failed = Vec::new();
     for (name, suite) in suites {
