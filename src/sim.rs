@@ -100,7 +100,6 @@ impl Simulation {
     /// [`SimError::Start`] when the scene asks for something that this version cannot do.
     pub fn new(scene: &Scene) -> Result<Self, SimError> {
         let missing = [
-            (!scene.sheaves.is_empty(), "[[sheave]]"),
             (scene.load.is_some(), "[load]"),
             (scene.far_end.is_some(), "[far_end]"),
             (matches!(scene.initial, Initial::Released(_)), "[initial] state = \"released\""),
@@ -132,6 +131,7 @@ impl Simulation {
             state,
             work: Work { matrices, force: zeros(), mid: [zeros(), zeros(), zeros()], constant_mass },
             outputs: Outputs {
+                sheaves: vec![Default::default(); scene.sheaves.len()],
                 cable: crate::outputs::CableOutputs { points: vec![Vector3::zeros(); scene.points], ..Default::default() },
                 ..Outputs::default()
             },
@@ -412,11 +412,9 @@ impl Simulation {
         let fresh = System::new(scene);
         self.system.chain = fresh.chain;
         self.system.lump = fresh.lump;
-        if let (FirstEnd::Winch { drive, contact, .. }, FirstEnd::Winch { contact: new, .. }, Some(winch)) =
-            (&mut self.system.first, &fresh.first, &scene.winch)
-        {
+        self.system.surfaces = fresh.surfaces;
+        if let (FirstEnd::Winch { drive, .. }, Some(winch)) = (&mut self.system.first, &scene.winch) {
             drive.retune(winch);
-            *contact = *new;
         }
         self.system.set_tolerance(STRICTNESS * scene.solver.tolerance, self.state.tension);
         Ok(())

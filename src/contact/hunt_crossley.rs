@@ -2,20 +2,42 @@
 
 use crate::scene::Contact;
 
-/// Force per length and its derivatives by δ and δ̇; zero without penetration.
+/// Force per length with its derivatives.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pressure {
+    /// f, N/m.
+    pub force: f64,
+    /// ∂f/∂δ, N/m².
+    pub by_depth: f64,
+    /// ∂f/∂δ̇, N·s/m².
+    pub by_rate: f64,
+    /// Its elastic part k δⁿ, N/m.
+    pub elastic: f64,
+    /// Energy of the elastic part k δⁿ⁺¹/(n + 1), J/m.
+    pub energy: f64,
+}
+
+/// Force per length at penetration `depth` (m) growing at `rate` (m/s).
 #[inline]
-pub fn force(law: &Contact, depth: f64, rate: f64) -> (f64, f64, f64) {
+pub fn pressure(law: &Contact, depth: f64, rate: f64) -> Pressure {
     if depth <= 0.0 {
-        return (0.0, 0.0, 0.0);
+        return Pressure::default();
     }
+    // The usual exponents without a logarithm.
+    let power = if law.exponent == 1.5 {
+        depth * depth.sqrt()
+    } else if law.exponent == 1.0 {
+        depth
+    } else {
+        depth.powf(law.exponent)
+    };
+    let elastic = law.stiffness * power;
+    let energy = elastic * depth / (law.exponent + 1.0);
     let gain = 1.0 + law.damping * rate;
     if gain <= 0.0 {
-        return (0.0, 0.0, 0.0);
+        return Pressure { elastic, energy, ..Pressure::default() };
     }
-    // The usual exponent without a logarithm.
-    let power = if law.exponent == 1.5 { depth * depth.sqrt() } else { depth.powf(law.exponent) };
-    let elastic = law.stiffness * power;
-    (elastic * gain, law.exponent * elastic / depth * gain, elastic * law.damping)
+    Pressure { force: elastic * gain, by_depth: law.exponent * elastic / depth * gain, by_rate: elastic * law.damping, elastic, energy }
 }
 
 #[cfg(test)]
@@ -25,13 +47,19 @@ mod tests {
     #[test]
     fn exact_law_is_never_adhesive_and_matches_its_derivatives() {
         let law = Contact { stiffness: 1e6, damping: 0.4, exponent: 1.5 };
-        assert_eq!(force(&law, -1e-3, 5.0).0, 0.0);
-        assert_eq!(force(&law, 1e-3, -5.0).0, 0.0); // leaves faster than 1/D
-        let (d, v, h) = (1e-3, 0.7, 1e-7);
-        let (f, by_depth, by_rate) = force(&law, d, v);
-        assert!((f - 1e6 * d.powf(1.5) * 1.28).abs() < 1e-12 * f);
-        let fd = (force(&law, d + h, v).0 - force(&law, d - h, v).0) / (2.0 * h);
-        let fv = (force(&law, d, v + h).0 - force(&law, d, v - h).0) / (2.0 * h);
-        assert!((fd / by_depth - 1.0).abs() < 1e-7 && (fv / by_rate - 1.0).abs() < 1e-7); // h² truncation, rounding
+        assert_eq!(pressure(&law, -1e-3, 5.0).force, 0.0);
+        assert_eq!(pressure(&law, 1e-3, -5.0).force, 0.0); // leaves faster than 1/D
+        for exponent in [1.0, 1.5, 2.3] {
+            let law = Contact { exponent, ..law };
+            let (d, v, h) = (1e-3, 0.7, 1e-7);
+            let at = pressure(&law, d, v);
+            assert!((at.force - 1e6 * d.powf(exponent) * 1.28).abs() < 1e-12 * at.force);
+            let fd = (pressure(&law, d + h, v).force - pressure(&law, d - h, v).force) / (2.0 * h);
+            let fv = (pressure(&law, d, v + h).force - pressure(&law, d, v - h).force) / (2.0 * h);
+            let fe = (pressure(&law, d + h, v).energy - pressure(&law, d - h, v).energy) / (2.0 * h);
+            for (difference, exact) in [(fd, at.by_depth), (fv, at.by_rate), (fe, at.elastic)] {
+                assert!((difference / exact - 1.0).abs() < 1e-7); // h² truncation, rounding
+            }
+        }
     }
 }

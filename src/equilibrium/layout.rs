@@ -14,7 +14,7 @@ pub fn lay_out(system: &System, t: f64, direction: &Vector3<f64>) -> Vec<f64> {
     let (mut arc, mut radius, mut wound) = (0.0, 1.0, None);
     // A held slope too: a straight shape across it would stay on the saddle between its two sides, the slope shrunk to nothing.
     if let FirstEnd::Winch { geometry, drive, contact, clamp } = &system.first
-        && (contact.is_some() || *clamp > 0.0)
+        && (*contact || *clamp > 0.0)
     {
         // Angle over which the tangent turns from the first node to `direction`, in the sense of winding.
         let phi = drive.angle(t).0[0];

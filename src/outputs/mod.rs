@@ -3,6 +3,7 @@
 //! z-up world and ship axes, SI; conversion to a user's frame happens at the FMI border.
 
 mod observe;
+mod sheave;
 
 pub use observe::observe;
 

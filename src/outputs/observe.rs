@@ -1,15 +1,12 @@
 //! From a balanced state to named quantities.
 
-use super::Outputs;
+use super::{Outputs, sheave};
 use crate::cable::section::Strains;
 use crate::cable::shape;
-use crate::math::lanes::{Vec3, dot};
+use crate::math::lanes::{Vec3, dot, scale};
 use crate::math::quadrature::{GAUSS2, GAUSS3};
 use crate::system::{Environment, FirstEnd, System, gather};
 use nalgebra::Vector3;
-
-/// Samples per element in the search for the end of the contact arc.
-const SAMPLES: usize = 12;
 
 /// Fills `out` from the state and the forces of the last balance; `f` are its nodal sums (the first node's rows hold what its support must
 /// balance).
@@ -17,51 +14,57 @@ pub fn observe(system: &System, env: &Environment, u: &[f64], w: &[f64], f: &[f6
     let last = system.chain.lengths.len() - 1;
     cable(system, env, u, w, out);
     let on_support = Vector3::new(f[0], f[1], f[2]);
-    let origin = Vector3::from(env.frame.origin.map(|j| j.0[0]));
     let base = Vector3::from(env.base.map(|j| j.0[0]));
     let to_ship = |v: &Vector3<f64>| Vector3::from(env.frame.to_ship(&(*v).into()));
-    let (force, moment) = match &system.first {
+    // Forces on the ship, ship axes, and their moment about its origin.
+    let (mut force, mut moment) = (Vector3::zeros(), Vector3::zeros());
+    let mut act = |at: &Vec3<f64>, f: &Vector3<f64>, about_it: &Vector3<f64>| {
+        force += f;
+        moment += Vector3::from(*at).cross(f) + about_it;
+    };
+    match &system.first {
         FirstEnd::Winch { geometry, drive, contact, .. } => {
-            // On the drum: the pin's part f0 less the contact on the cable; moments of the generalized forces are Σ q × Q.
-            let (mut on_cable, mut turning) = (Vector3::zeros(), Vector3::zeros());
-            if contact.is_some() {
-                for (e, q) in system.contact_forces.iter().enumerate() {
-                    let x = gather(u, e);
-                    for i in 0..4 {
-                        let force = Vector3::new(q[3 * i], q[3 * i + 1], q[3 * i + 2]);
-                        let mut arm = Vector3::from(x[i]);
-                        if i % 2 == 0 {
-                            on_cable += force;
-                            arm += base;
-                        }
-                        turning += arm.cross(&force);
-                    }
-                }
-            }
+            // The pin's part less the contact on the cable.
+            let (mut on_drum, mut about_centre) = (to_ship(&on_support), Vector3::zeros());
             let slope = Vector3::new(u[3], u[4], u[5]);
             let clamp = slope.cross(&Vector3::from(system.clamp_force));
-            let force = on_support - on_cable;
-            // World moment about the world's origin.
-            let moment = base.cross(&on_support) - turning - clamp;
-            let centre = origin + Vector3::from(env.frame.to_world(&geometry.centre));
-            let about_centre = to_ship(&(moment - centre.cross(&force)));
+            let arm = Vector3::from(env.frame.locate(&base.into())) - Vector3::from(geometry.centre);
+            about_centre += arm.cross(&on_drum) - to_ship(&clamp);
+            let mut leaving = 0.0;
+            if *contact {
+                let load = &system.surface_loads[0];
+                on_drum -= sheave::to_ship(&system.surfaces[0], &load.force);
+                about_centre -= sheave::to_ship(&system.surfaces[0], &load.moment);
+                leaving = sheave::contact_arc(system, env, u, 0).map_or(0.0, |a| a.1);
+            }
             let phi = drive.state();
             out.winch.angle = phi[0];
             out.winch.rate = phi[1];
             out.winch.torque = about_centre.dot(&Vector3::from(geometry.axis));
-            out.winch.force = to_ship(&force);
-            out.winch.tension = span_tension(system, u, w, leaving_point(system, env, u));
-            (force, moment)
+            out.winch.force = on_drum;
+            out.winch.tension = span_tension(system, u, w, leaving);
+            act(&geometry.centre, &on_drum, &about_centre);
         }
-        FirstEnd::Anchor(_) => {
+        FirstEnd::Anchor(at) => {
             out.anchor.force = to_ship(&on_support);
             out.anchor.tension = nodal_tension(system, u, 0);
-            (on_support, base.cross(&on_support))
+            act(at, &out.anchor.force, &Vector3::zeros());
         }
-    };
-    out.ship.force_world = force;
-    out.ship.force = to_ship(&force);
-    out.ship.moment = to_ship(&(moment - origin.cross(&force)));
+    }
+    let first = system.surfaces.len() - out.sheaves.len();
+    let end = system.arc[last + 1];
+    for i in 0..out.sheaves.len() {
+        let before = (first + i).checked_sub(1).and_then(|k| sheave::contact_arc(system, env, u, k)).map_or(0.0, |a| a.1);
+        let after = (first + i + 1 < system.surfaces.len())
+            .then(|| sheave::contact_arc(system, env, u, first + i + 1))
+            .flatten()
+            .map_or(end, |a| a.0);
+        sheave::sheave(system, env, u, w, first + i, (before, after), &mut out.sheaves[i]);
+        act(&system.surfaces[first + i].centre, &out.sheaves[i].force, &out.sheaves[i].moment);
+    }
+    out.ship.force = force;
+    out.ship.force_world = Vector3::from(env.frame.to_world(&force.into()));
+    out.ship.moment = moment;
     let at = 6 * (last + 1);
     out.body.position = Vector3::from_fn(|c, _| u[at + c] + env.base[c].0[0]);
     out.body.velocity = Vector3::from_fn(|c, _| w[at + c] + env.base[c].0[1]);
@@ -126,7 +129,7 @@ fn end_curvature(system: &System, u: &[f64], w: &[f64], e: usize, end: f64) -> f
 }
 
 /// N + ½EIκ² at arc length `s`: conserved along a frictionless bend, the pull of the free span.
-fn span_tension(system: &System, u: &[f64], w: &[f64], s: f64) -> f64 {
+pub fn span_tension(system: &System, u: &[f64], w: &[f64], s: f64) -> f64 {
     let count = system.chain.lengths.len();
     let at_node = |j: usize| {
         let left = (j > 0).then(|| end_curvature(system, u, w, j - 1, 1.0));
@@ -137,36 +140,13 @@ fn span_tension(system: &System, u: &[f64], w: &[f64], s: f64) -> f64 {
         };
         nodal_tension(system, u, j) + 0.5 * system.chain.section.ei * k * k
     };
-    let e = system.arc[1..count].partition_point(|x| *x <= s).min(count - 1);
-    let x = ((s - system.arc[e]) / system.chain.lengths[e]).clamp(0.0, 1.0);
+    let (e, x) = system.element_at(s);
     at_node(e) * (1.0 - x) + at_node(e + 1) * x
 }
 
-/// Arc length where the cable leaves the drum: the far end of the last penetrating stretch, 0 without any.
-fn leaving_point(system: &System, env: &Environment, u: &[f64]) -> f64 {
-    let FirstEnd::Winch { geometry, contact: Some(drum), .. } = &system.first else { return 0.0 };
-    let gap = |e: usize, x: f64| {
-        let l = system.chain.lengths[e];
-        let r = shape::interpolate(&shape::value(x, l), &gather(u, e));
-        let s = env.frame.locate(&std::array::from_fn(|c| r[c] + env.base[c].0[0]));
-        drum.gap(&std::array::from_fn(|c| s[c] - geometry.centre[c]))
-    };
-    for e in (0..system.chain.lengths.len()).rev() {
-        if system.contact_forces[e] == [0.0; 12] {
-            continue;
-        }
-        for k in (0..SAMPLES).rev() {
-            let (mut lo, mut hi) = (k as f64 / SAMPLES as f64, (k + 1) as f64 / SAMPLES as f64);
-            if gap(e, lo) < 0.0 {
-                if gap(e, hi) >= 0.0 {
-                    for _ in 0..40 {
-                        let mid = 0.5 * (lo + hi);
-                        if gap(e, mid) < 0.0 { lo = mid } else { hi = mid }
-                    }
-                }
-                return system.arc[e] + hi * system.chain.lengths[e];
-            }
-        }
-    }
-    0.0
+/// Unit tangent at arc length `s`, world axes.
+pub fn tangent_at(system: &System, u: &[f64], s: f64) -> Vec3<f64> {
+    let (e, x) = system.element_at(s);
+    let p = shape::interpolate(&shape::slope(x, 1.0 / system.chain.lengths[e]), &gather(u, e));
+    scale(1.0 / dot(&p, &p).sqrt(), &p)
 }

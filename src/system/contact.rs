@@ -1,223 +1,281 @@
-//! Line contact of the elements with the drum.
+//! Contact of the elements with drum and sheaves.
 //!
-//! Within an element the arcs in contact are found first (samples, then the roots of the gap), and each is integrated by its own five Gauss
-//! points. So the force changes smoothly as the cable is laid on or lifted off, whatever the mesh. The arcs' ends move with the shape; their
-//! part of the tangent is exact too.
+//! Within an element the arcs in contact are found first, face by face, and each is integrated by its own Gauss points. So the force changes
+//! smoothly as the cable is laid on or lifted off, whatever the mesh. The arcs' ends move with the shape; their part of the tangent is exact
+//! too. All of an element's work is done in the surface's axes and turned into world axes once.
 
 use super::environment::Environment;
 use super::matrices::{Matrices, element_block};
-use super::points::ElementPoint;
-use super::{FirstEnd, System, gather};
+use super::{System, gather};
 use crate::cable::shape;
-use crate::contact::drum::Drum;
+use crate::contact::arcs::{Arc, Cubic, Touch};
+use crate::contact::surface::{Face, Surface};
 use crate::math::lanes::{Mat3, Vec3, axpy, dot, mat_vec};
 use crate::math::quadrature::GAUSS5;
 
-/// Intervals per element in the search for arcs in contact.
-const SAMPLES: usize = 4;
-
-/// Where the search begins in the first element. Its node lies on the drum's surface whatever the shape, so that ξ = 0 is a root of the gap
-/// that says nothing, of a sign that is rounding.
+/// Where the search begins in the first element. Where its node lies on the surface whatever the shape, ξ = 0 is a root of the gap that says
+/// nothing, of a sign that is rounding.
 const BEYOND_PIN: f64 = 1e-3;
 
-/// An element and the drum, in one place.
-struct Pair<'a> {
-    drum: &'a Drum,
-    centre: Vec3<f64>,
-    env: &'a Environment,
-    u: [Vec3<f64>; 4],
-    l: f64,
+/// What the cable does to a surface, in the surface's axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SurfaceLoad {
+    /// Force on the cable, N.
+    pub force: Vec3<f64>,
+    /// Its moment about the centre, N·m.
+    pub moment: Vec3<f64>,
+    /// Force normal to each face, N.
+    pub faces: [f64; 2],
 }
 
-/// A stretch [from, to] of ξ in contact; `moving` tells which of its ends are roots of the gap.
-#[derive(Clone, Copy, Debug)]
-struct Arc {
-    from: f64,
-    to: f64,
-    moving: [bool; 2],
+/// How a surface's axes move against the world and the first node.
+pub struct SurfaceFrame {
+    /// World components into the surface's axes.
+    pub rotation: Mat3<f64>,
+    /// The first node's position.
+    pub base: Vec3<f64>,
+    /// Its velocity.
+    base_velocity: Vec3<f64>,
+    /// ∂(relative velocity)/∂(position) at fixed world velocity, −[ω]×; zero in a static evaluation.
+    turn: Mat3<f64>,
+    frozen: bool,
 }
 
-impl Pair<'_> {
-    /// Position from the drum's centre, ship axes.
-    fn locate(&self, r: &Vec3<f64>) -> Vec3<f64> {
-        let s = self.env.frame.locate(&std::array::from_fn(|c| r[c] + self.env.base[c].0[0]));
-        std::array::from_fn(|c| s[c] - self.centre[c])
-    }
-
-    fn gap(&self, x: f64) -> f64 {
-        self.drum.gap(&self.locate(&shape::interpolate(&shape::value(x, self.l), &self.u)))
-    }
-
-    /// ∂gap/∂r in world axes (the outward unit normal) and dgap/dξ.
-    fn normal_and_slope(&self, x: f64) -> (Vec3<f64>, f64) {
-        let at = self.locate(&shape::interpolate(&shape::value(x, self.l), &self.u));
-        let radial = axpy(&at, -dot(&at, &self.drum.axis), &self.drum.axis);
-        let rho = dot(&radial, &radial).sqrt();
-        let e = self.env.frame.to_world(&radial.map(|c| c / rho));
-        (e, self.l * dot(&e, &shape::interpolate(&shape::slope(x, 1.0 / self.l), &self.u)))
-    }
-
-    fn slope(&self, x: f64) -> f64 {
-        self.normal_and_slope(x).1
-    }
-
-    /// Whether the element can touch the drum: a ball around its Bézier polygon against the cylinder.
-    fn near(&self) -> bool {
-        let (q, third) = (&self.u, self.l / 3.0);
-        let middle: Vec3<f64> = std::array::from_fn(|c| 0.5 * (q[0][c] + q[2][c]));
-        let reach = [q[0], axpy(&q[0], third, &q[1]), axpy(&q[2], -third, &q[3])]
-            .iter()
-            .map(|p| (0..3).map(|c| (p[c] - middle[c]).powi(2)).sum::<f64>())
-            .fold(0.0, f64::max)
-            .sqrt();
-        self.drum.gap(&self.locate(&middle)) < reach
-    }
-
-    /// The arcs in contact, in order. Between samples an extremum of the gap is looked for where its slopes promise one, so that the cable's
-    /// touching between two samples is not missed.
-    fn arcs(&self, start: f64, mut found: impl FnMut(Arc)) {
-        let mut open: Option<f64> = None;
-        let mut cross = |x: f64| match open.take() {
-            Some(from) => found(Arc { from, to: x, moving: [from > start, true] }),
-            None => open = Some(x),
-        };
-        let (mut x0, mut g0, mut d0) = (start, self.gap(start), self.slope(start));
-        if g0 < 0.0 {
-            cross(start);
+impl SurfaceFrame {
+    /// Of `surface` at one instant.
+    pub fn new(surface: &Surface, env: &Environment, frozen: bool) -> Self {
+        let frame = &env.frame;
+        let b = &surface.basis;
+        let rotation = std::array::from_fn(|i| frame.to_world(&b[i]));
+        let place = env.base.map(|j| j.0[0]);
+        let at = frame.locate(&place);
+        let base = mat_vec(b, &axpy(&at, -1.0, &surface.centre));
+        let (mut base_velocity, mut turn) = ([0.0; 3], [[0.0; 3]; 3]);
+        if !frozen {
+            base_velocity = mat_vec(b, &frame.relative_velocity(&place, &env.base.map(|j| j.0[1])));
+            let rate: Mat3<f64> = std::array::from_fn(|i| {
+                std::array::from_fn(|j| (0..3).map(|k| frame.rotation[k][i].0[1] * frame.rotation[k][j].0[0]).sum())
+            });
+            turn = std::array::from_fn(|i| std::array::from_fn(|j| dot(&b[i], &mat_vec(&rate, &b[j]))));
         }
-        for k in 1..=SAMPLES {
-            let x1 = k as f64 / SAMPLES as f64;
-            let (g1, d1) = (self.gap(x1), self.slope(x1));
-            if (g0 < 0.0) != (g1 < 0.0) {
-                cross(root(|x| self.gap(x), (x0, g0), (x1, g1)));
-            } else if (d0 < 0.0) != (d1 < 0.0) && (d0 < 0.0) == (g0 >= 0.0) {
-                let x = root(|x| self.slope(x), (x0, d0), (x1, d1));
-                let g = self.gap(x);
-                if (g < 0.0) != (g0 < 0.0) {
-                    cross(root(|x| self.gap(x), (x0, g0), (x, g)));
-                    cross(root(|x| self.gap(x), (x, g), (x1, g1)));
-                }
-            }
-            (x0, g0, d0) = (x1, g1, d1);
-        }
-        if let Some(from) = open {
-            found(Arc { from, to: 1.0, moving: [from > start, false] });
-        }
+        Self { rotation, base, base_velocity, turn, frozen }
     }
 
-    /// Derivative of the root at ξ by the element's slots, −∇gap sᵢ / gap′; `None` where the cable only grazes the drum.
-    fn root_rate(&self, x: f64) -> Option<[f64; 12]> {
-        let s = shape::value(x, self.l);
-        let (e, slope) = self.normal_and_slope(x);
-        (slope.abs() > 1e-9 * self.l).then(|| std::array::from_fn(|k| -s[k / 3] * e[k % 3] / slope))
+    /// An element's shape from its slots (relative to the first node, world axes).
+    #[inline]
+    pub fn shape(&self, u: &[Vec3<f64>; 4], l: f64) -> ([Vec3<f64>; 4], Cubic) {
+        let mut q = u.map(|x| mat_vec(&self.rotation, &x));
+        let relative = q;
+        for i in [0, 2] {
+            q[i] = axpy(&q[i], 1.0, &self.base);
+        }
+        (relative, Cubic::hermite(&q, l))
+    }
+
+    /// The element's velocity relative to the ship, from its relative slots in the surface's axes.
+    #[inline]
+    fn velocity(&self, relative: &[Vec3<f64>; 4], w: &[Vec3<f64>; 4], l: f64) -> Cubic {
+        if self.frozen {
+            return Cubic([[0.0; 3]; 4]);
+        }
+        let mut q: [Vec3<f64>; 4] =
+            std::array::from_fn(|i| axpy(&mat_vec(&self.rotation, &w[i]), 1.0, &mat_vec(&self.turn, &relative[i])));
+        for i in [0, 2] {
+            q[i] = axpy(&q[i], 1.0, &self.base_velocity);
+        }
+        Cubic::hermite(&q, l)
     }
 }
 
-/// A root of `f` in a bracket of (x, f(x)), by the Illinois form of the false position.
-fn root(f: impl Fn(f64) -> f64, (mut a, mut fa): (f64, f64), (mut b, mut fb): (f64, f64)) -> f64 {
-    for _ in 0..60 {
-        let x = (a * fb - b * fa) / (fb - fa);
-        if !(x > a.min(b) && x < a.max(b)) || (b - a).abs() < 1e-15 {
-            break;
-        }
-        let fx = f(x);
-        if fx == 0.0 {
-            return x;
-        }
-        if (fx < 0.0) != (fb < 0.0) {
-            (a, fa) = (b, fb);
-        } else {
-            fa *= 0.5;
-        }
-        (b, fb) = (x, fx);
+/// Whether an element can touch the surface: the gaps are 1-Lipschitz, so a ball around its Bézier polygon decides.
+#[inline]
+pub fn near(surface: &Surface, frame: &SurfaceFrame, u: &[Vec3<f64>; 4], l: f64) -> bool {
+    let third = l / 3.0;
+    let middle: Vec3<f64> = std::array::from_fn(|c| 0.5 * (u[0][c] + u[2][c]));
+    let reach2 = [u[0], axpy(&u[0], third, &u[1]), axpy(&u[2], -third, &u[3])]
+        .iter()
+        .map(|p| (0..3).map(|c| (p[c] - middle[c]).powi(2)).sum::<f64>())
+        .fold(0.0, f64::max);
+    let at = axpy(&mat_vec(&frame.rotation, &middle), 1.0, &frame.base);
+    let (gap, beyond) = (surface.least_gap(&at), surface.beyond(&at));
+    (gap <= 0.0 || gap * gap < reach2) && (beyond <= 0.0 || beyond * beyond < reach2)
+}
+
+/// Calls `found` with every arc of element `e` in contact with a face (its index first).
+pub fn touching(surface: &Surface, curve: &Cubic, e: usize, mut found: impl FnMut(usize, Face, Arc)) {
+    let (faces, count) = surface.faces();
+    for (i, &face) in faces[..count].iter().enumerate() {
+        Touch { surface, face, curve }.arcs(if e == 0 { BEYOND_PIN } else { 0.0 }, |arc| found(i, face, arc));
     }
-    b
+}
+
+/// Forces (and stiffness, damping) of one element in the surface's axes.
+struct Assembly {
+    forces: [[f64; 3]; 4],
+    stiffness: [[f64; 12]; 12],
+    damping: [[f64; 12]; 12],
 }
 
 impl System {
     /// Overwrites the contact forces; with `TANGENT` adds to the matrices.
     pub(super) fn contact<const TANGENT: bool>(&mut self, env: &Environment, u: &[f64], w: &[f64], m: &mut Matrices) {
-        let FirstEnd::Winch { geometry, contact: Some(drum), .. } = &self.first else { return };
-        let rotation: Mat3<f64> = std::array::from_fn(|i| std::array::from_fn(|j| env.frame.rotation[i][j].0[0]));
-        // ∂ṡ/∂s at fixed world velocity, −[ω]×.
-        let turn: Mat3<f64> = if self.frozen {
-            [[0.0; 3]; 3]
-        } else {
-            std::array::from_fn(|i| {
-                std::array::from_fn(|j| (0..3).map(|k| env.frame.rotation[k][i].0[1] * env.frame.rotation[k][j].0[0]).sum())
-            })
-        };
-        for (e, &l) in self.chain.lengths.iter().enumerate() {
-            let forces = &mut self.contact_forces;
-            forces[e] = [0.0; 12];
-            let pair = Pair { drum, centre: geometry.centre, env, u: gather(u, e), l };
-            if !pair.near() {
-                continue;
+        self.contact_forces.fill([0.0; 12]);
+        for (surface, total) in self.surfaces.iter().zip(&mut self.surface_loads) {
+            *total = SurfaceLoad::default();
+            let frame = SurfaceFrame::new(surface, env, self.frozen);
+            for (e, &l) in self.chain.lengths.iter().enumerate() {
+                let slots = gather(u, e);
+                if !near(surface, &frame, &slots, l) {
+                    continue;
+                }
+                let (relative, curve) = frame.shape(&slots, l);
+                let velocity = frame.velocity(&relative, &gather(w, e), l);
+                let mut sum = Assembly { forces: [[0.0; 3]; 4], stiffness: [[0.0; 12]; 12], damping: [[0.0; 12]; 12] };
+                let mut touched = false;
+                if e == 0 && std::env::var("SKIP0").is_ok() { continue; }
+                touching(surface, &curve, e, |side, face, arc| {
+                    touched = true;
+                    let (energy, power) = sum.arc::<TANGENT>(surface, side, face, &arc, &curve, &velocity, &frame.turn, l, total);
+                    self.tally.elastic += energy;
+                    self.tally.elastic_power += power;
+                });
+                if touched {
+                    sum.to_world::<TANGENT>(&frame.rotation, e, &mut self.contact_forces[e], surface.is_damped(), m);
+                }
             }
-            pair.arcs(if e == 0 { BEYOND_PIN } else { 0.0 }, |arc| {
-                let length = arc.to - arc.from;
-                // ∂Q/∂from and ∂Q/∂to of the rule, points moving along.
-                let mut by_ends = [[0.0; 12]; 2];
-                for (position, weight) in GAUSS5 {
-                    let point = ElementPoint::new(u, w, e, l, arc.from + length * position);
-                    let s = pair.locate(&point.u);
-                    let v = if self.frozen {
-                        [0.0; 3]
-                    } else {
-                        let r: Vec3<f64> = std::array::from_fn(|c| point.u[c] + env.base[c].0[0]);
-                        env.frame.relative_velocity(&r, &std::array::from_fn(|c| point.w[c] + env.base[c].0[1]))
-                    };
-                    let Some(load) = drum.load(&s, &v) else { continue };
-                    let wl = weight * length * l;
-                    let f = env.frame.to_world(&load.f);
-                    point.push(&f.map(|x| wl * x), forces);
-                    if TANGENT {
-                        let mut ds = load.ds;
-                        for (row, dv) in ds.iter_mut().zip(&load.dv) {
-                            for j in 0..3 {
-                                row[j] += (0..3).map(|k| dv[k] * turn[k][j]).sum::<f64>();
-                            }
-                        }
-                        let by_r = sandwich(&rotation, &ds);
-                        let by_v = sandwich(&rotation, &load.dv);
-                        let times = |b: &Mat3<f64>| b.map(|row| row.map(|x| wl * x));
-                        let damped = drum.law.damping > 0.0;
-                        point.couple(Some(&times(&by_r)), None, damped.then(|| times(&by_v)).as_ref(), None, m);
-                        if arc.moving != [false, false] {
-                            // d/dξ of sᵢ f.
-                            let fx = axpy(&mat_vec(&by_r, &point.p), 1.0, &mat_vec(&by_v, &point.vp));
-                            for k in 0..12 {
-                                let (i, c) = (k / 3, k % 3);
-                                let (g, rate) = (point.s[i] * f[c], l * (point.sp[i] * f[c] + point.s[i] * fx[c]));
-                                by_ends[0][k] += weight * l * (length * rate * (1.0 - position) - g);
-                                by_ends[1][k] += weight * l * (length * rate * position + g);
-                            }
+        }
+    }
+}
+
+impl Assembly {
+    /// Adds an arc; returns the energy stored in it and that energy's rate.
+    #[inline]
+    fn arc<const TANGENT: bool>(
+        &mut self,
+        surface: &Surface,
+        side: usize,
+        face: Face,
+        arc: &Arc,
+        curve: &Cubic,
+        velocity: &Cubic,
+        turn: &Mat3<f64>,
+        l: f64,
+        total: &mut SurfaceLoad,
+    ) -> (f64, f64) {
+        let length = arc.to - arc.from;
+        let (mut energy, mut power) = (0.0, 0.0);
+        let damped = surface.is_damped();
+        // ∂Q/∂from and ∂Q/∂to of the rule, points moving along.
+        let mut by_ends = [[0.0; 12]; 2];
+        for (position, weight) in GAUSS5 {
+            let x = arc.from + length * position;
+            let (s, v) = (curve.at(x), velocity.at(x));
+            let Some(load) = surface.load::<TANGENT>(face, &s, &v, 0.0) else { continue };
+            let shape = shape::value(x, l);
+            let wl = weight * length * l;
+            energy += wl * load.energy;
+            power += wl * load.power;
+            let f = load.f.map(|f| wl * f);
+            total.faces[side] += wl * load.normal;
+            for c in 0..3 {
+                total.force[c] += f[c];
+                total.moment[c] += s[(c + 1) % 3] * f[(c + 2) % 3] - s[(c + 2) % 3] * f[(c + 1) % 3];
+                for i in 0..4 {
+                    self.forces[i][c] += shape[i] * f[c];
+                }
+            }
+            if TANGENT {
+                let mut ds = load.ds;
+                if damped {
+                    for r in 0..3 {
+                        for c in 0..3 {
+                            ds[r][c] += (0..3).map(|k| load.dv[r][k] * turn[k][c]).sum::<f64>();
                         }
                     }
                 }
-                if TANGENT {
-                    for (end, x) in [arc.from, arc.to].into_iter().enumerate() {
-                        if let Some(rate) = arc.moving[end].then(|| pair.root_rate(x)).flatten() {
-                            for i in 0..4 {
-                                for j in 0..4 {
-                                    let block = element_block(&mut m.stiffness, e, i, j);
-                                    for r in 0..3 {
-                                        for c in 0..3 {
-                                            block[3 * (i % 2) + r][3 * (j % 2) + c] -= by_ends[end][3 * i + r] * rate[3 * j + c];
-                                        }
-                                    }
+                for i in 0..4 {
+                    for j in 0..4 {
+                        let both = wl * shape[i] * shape[j];
+                        for r in 0..3 {
+                            for c in 0..3 {
+                                self.stiffness[3 * i + r][3 * j + c] -= both * ds[r][c];
+                            }
+                        }
+                        if damped {
+                            for r in 0..3 {
+                                for c in 0..3 {
+                                    self.damping[3 * i + r][3 * j + c] -= both * load.dv[r][c];
                                 }
                             }
                         }
                     }
                 }
-            });
+                if arc.moving != [false, false] {
+                    // d/dξ of sᵢ f.
+                    let fx = axpy(&mat_vec(&load.ds, &curve.slope(x)), 1.0, &mat_vec(&load.dv, &velocity.slope(x)));
+                    let slope = shape::slope(x, 1.0 / l);
+                    for k in 0..12 {
+                        let (i, c) = (k / 3, k % 3);
+                        let (g, rate) = (shape[i] * load.f[c], l * slope[i] * load.f[c] + shape[i] * fx[c]);
+                        by_ends[0][k] += weight * l * (length * rate * (1.0 - position) - g);
+                        by_ends[1][k] += weight * l * (length * rate * position + g);
+                    }
+                }
+            }
+        }
+        if TANGENT {
+            for (end, x) in [arc.from, arc.to].into_iter().enumerate() {
+                if !arc.moving[end] {
+                    continue;
+                }
+                // The root's rate by the slots, −∇gap sᵢ / gap′; none where the cable only grazes the surface.
+                let s = curve.at(x);
+                let rho = (s[1] * s[1] + s[2] * s[2]).sqrt();
+                let n = [face.axial, face.radial * s[1] / rho, face.radial * s[2] / rho];
+                let slope = dot(&n, &curve.slope(x));
+                if slope.abs() <= 1e-9 * l {
+                    continue;
+                }
+                let shape = shape::value(x, l);
+                for j in 0..12 {
+                    let rate = -shape[j / 3] * n[j % 3] / slope;
+                    for i in 0..12 {
+                        self.stiffness[i][j] -= by_ends[end][i] * rate;
+                    }
+                }
+            }
+        }
+        (energy, power)
+    }
+
+    /// Turns everything into world axes and adds it to the element's forces and matrices.
+    fn to_world<const TANGENT: bool>(&self, r: &Mat3<f64>, e: usize, forces: &mut [f64; 12], damped: bool, m: &mut Matrices) {
+        for i in 0..4 {
+            for c in 0..3 {
+                forces[3 * i + c] += (0..3).map(|k| r[k][c] * self.forces[i][k]).sum::<f64>();
+            }
+        }
+        if TANGENT {
+            add_turned(&mut m.stiffness, e, r, &self.stiffness);
+            if damped {
+                add_turned(&mut m.damping, e, r, &self.damping);
+            }
         }
     }
 }
 
-/// R b Rᵀ.
-fn sandwich(rotation: &Mat3<f64>, b: &Mat3<f64>) -> Mat3<f64> {
-    let left: Mat3<f64> = std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| rotation[i][k] * b[k][j]).sum::<f64>()));
-    std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| left[i][k] * rotation[j][k]).sum()))
+/// m += rᵀ k r, block by block of three.
+fn add_turned(m: &mut crate::linalg::BlockTridiagonal, e: usize, r: &Mat3<f64>, k: &[[f64; 12]; 12]) {
+    for i in 0..4 {
+        for j in 0..4 {
+            let left: Mat3<f64> =
+                std::array::from_fn(|a| std::array::from_fn(|c| (0..3).map(|b| k[3 * i + a][3 * j + b] * r[b][c]).sum::<f64>()));
+            let block = element_block(m, e, i, j);
+            for a in 0..3 {
+                for c in 0..3 {
+                    block[3 * (i % 2) + a][3 * (j % 2) + c] += (0..3).map(|b| r[b][a] * left[b][c]).sum::<f64>();
+                }
+            }
+        }
+    }
 }

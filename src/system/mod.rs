@@ -3,7 +3,7 @@
 //! r(p, t) = r_b(t) + u(p, t), where r_b is the first node's prescribed motion. So u(0) = 0 exactly at every time, the boundary's motion enters
 //! only as the uniform inertia −M r̈_b and through the velocities that drag and contact see, and a ship far from the origin costs no digits.
 
-mod contact;
+pub mod contact;
 mod elements;
 mod environment;
 mod matrices;
@@ -11,12 +11,13 @@ mod points;
 mod wetting;
 
 pub use elements::{Chain, Tally, Wetness, gather};
+pub use contact::SurfaceLoad;
 pub use environment::Environment;
 pub use matrices::Matrices;
 pub use points::ElementPoint;
 
 use crate::cable::section::Section;
-use crate::contact::drum::Drum;
+use crate::contact::surface::{Friction, Groove, Surface};
 use crate::hydro::line::{Flow, LineInWater, LinePoint};
 use crate::hydro::lump::LumpInWater;
 use crate::hydro::surface::line_share;
@@ -27,10 +28,13 @@ use crate::math::quadrature::GAUSS3;
 use crate::scene::Scene;
 use crate::ship::ShipDrive;
 use crate::sim::Channel;
-use crate::winch::{DrumGeometry, WinchDrive};
+use crate::winch::{DrumGeometry, WinchDrive, reference_directions};
 
 /// Stiffness of a `tangent` end over EI/L of the first element: its slope is held to about one over this.
 const CLAMP: f64 = 1e4;
+
+/// Slip speed below which friction fades, m/s: small beside a cable's working speeds, large enough for steps of milliseconds.
+const SLIP_SPEED: f64 = 1e-3;
 
 /// Where the first node goes.
 #[derive(Clone, Debug)]
@@ -41,8 +45,8 @@ pub enum FirstEnd {
         geometry: DrumGeometry,
         /// Its rotation.
         drive: Box<WinchDrive>,
-        /// Contact of the cable with it.
-        contact: Option<Drum>,
+        /// Whether the cable feels it: it is the first of the surfaces.
+        contact: bool,
         /// Stiffness that holds the slope, N·m; 0 when it is free.
         clamp: f64,
     },
@@ -99,9 +103,13 @@ pub struct System {
     pub current: [Ramp; 2],
     /// Force on the body.
     pub body_force: [Ramp; 3],
-    /// Forces of each element on its slots, of the last evaluation, without contact with the drum.
+    /// Forces of each element on its slots, of the last evaluation, without contact.
     pub forces: Vec<[f64; 12]>,
-    /// Forces of the drum on the elements' slots, of the last evaluation.
+    /// Drum and sheaves: what the cable can touch.
+    pub surfaces: Vec<Surface>,
+    /// What each of them feels, of the last evaluation.
+    pub surface_loads: Vec<SurfaceLoad>,
+    /// Forces of drum and sheaves on the elements' slots, of the last evaluation.
     pub contact_forces: Vec<[f64; 12]>,
     /// Force of everything outside the cable on the last node, of the last evaluation, N.
     pub lump_force: Vec3<f64>,
@@ -132,7 +140,7 @@ impl System {
                 FirstEnd::Winch {
                     geometry,
                     drive: Box::new(WinchDrive::new(w)),
-                    contact: w.contact.map(|law| Drum { axis: geometry.axis, radius: geometry.radius, law }),
+                    contact: w.contact.is_some(),
                     clamp: if w.tangent_end { CLAMP * scene.cable.ei / scene.elements[0] } else { 0.0 },
                 }
             }
@@ -142,6 +150,7 @@ impl System {
             mass: scene.body.as_ref().map_or(0.0, |b| b.mass),
             water: scene.body.as_ref().and_then(|b| scene.fluid.as_ref().map(|f| LumpInWater::new(f, b, scene.gravity))),
         };
+        let surfaces = surfaces(scene);
         let n = scene.elements.len();
         Self {
             chain: Chain { lengths: scene.elements.clone(), mass_per_length: scene.cable.mass_per_length, section, water },
@@ -154,6 +163,8 @@ impl System {
             body_force: Default::default(),
             forces: vec![[0.0; 12]; n],
             contact_forces: vec![[0.0; 12]; n],
+            surface_loads: vec![SurfaceLoad::default(); surfaces.len()],
+            surfaces,
             lump_force: [0.0; 3],
             clamp_force: [0.0; 3],
             tally: Tally::default(),
@@ -167,6 +178,13 @@ impl System {
     /// Number of nodes.
     pub fn nodes(&self) -> usize {
         self.arc.len()
+    }
+
+    /// Element and ξ of arc length `s`.
+    pub fn element_at(&self, s: f64) -> (usize, f64) {
+        let count = self.chain.lengths.len();
+        let e = self.arc[1..count].partition_point(|x| *x <= s).min(count - 1);
+        (e, ((s - self.arc[e]) / self.chain.lengths[e]).clamp(0.0, 1.0))
     }
 
     /// Mass of the cable, kg.
@@ -228,7 +246,9 @@ impl System {
         if self.chain.water.is_some() {
             self.surface::<TANGENT>(env, u, w, a, m);
         }
-        self.contact::<TANGENT>(env, u, w, m);
+        if !self.surfaces.is_empty() {
+            self.contact::<TANGENT>(env, u, w, m);
+        }
         f.fill(0.0);
         for (e, (q, c)) in self.forces.iter().zip(&self.contact_forces).enumerate() {
             for k in 0..12 {
@@ -367,6 +387,28 @@ impl System {
         self.evaluate::<false>(&env, u, w, Some(a), f, &mut none);
         self.matrices = none;
     }
+}
+
+/// Drum (first, if the cable feels it) and sheaves.
+fn surfaces(scene: &Scene) -> Vec<Surface> {
+    let d = scene.cable.diameter;
+    let basis = |axis: &nalgebra::Vector3<f64>| {
+        let (up, side) = reference_directions(axis);
+        [(*axis).into(), up.into(), side.into()]
+    };
+    let drum = scene.winch.iter().filter_map(|w| {
+        let law = w.contact?;
+        Some(Surface { centre: w.position.into(), basis: basis(&w.axis), radius: w.radius + 0.5 * d, law, groove: None, friction: None })
+    });
+    let sheaves = scene.sheaves.iter().map(|s| Surface {
+        centre: s.position.into(),
+        basis: basis(&s.axis),
+        radius: s.radius + 0.5 * d,
+        law: s.contact,
+        groove: s.groove_angle.map(|a| Groove::new(a, s.groove_depth, d)),
+        friction: (s.friction > 0.0).then_some(Friction { coefficient: s.friction, slip_speed: SLIP_SPEED }),
+    });
+    drum.chain(sheaves).collect()
 }
 
 impl Problem for System {

@@ -1,0 +1,162 @@
+//! Which stretches of a cubic curve penetrate a face.
+//!
+//! The gap is sampled, an extremum is looked for where the slopes of two samples promise one (so that touching between samples is not missed),
+//! and the ends of each stretch are found as roots.
+
+use super::surface::{Face, Surface};
+use crate::math::lanes::Vec3;
+
+/// Intervals of the search.
+const INTERVALS: usize = 4;
+
+/// A curve in the surface's axes, cubic in ξ on [0, 1]: coefficients of 1, ξ, ξ², ξ³.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cubic(pub [Vec3<f64>; 4]);
+
+impl Cubic {
+    /// From end points and end slopes times the length, as (point, slope, point, slope).
+    #[inline]
+    pub fn hermite(q: &[Vec3<f64>; 4], length: f64) -> Self {
+        let mut k = [[0.0; 3]; 4];
+        for c in 0..3 {
+            let (a, b, step) = (length * q[1][c], length * q[3][c], q[2][c] - q[0][c]);
+            k[0][c] = q[0][c];
+            k[1][c] = a;
+            k[2][c] = 3.0 * step - 2.0 * a - b;
+            k[3][c] = a + b - 2.0 * step;
+        }
+        Self(k)
+    }
+
+    /// Value at ξ.
+    #[inline]
+    pub fn at(&self, x: f64) -> Vec3<f64> {
+        let k = &self.0;
+        std::array::from_fn(|c| k[0][c] + x * (k[1][c] + x * (k[2][c] + x * k[3][c])))
+    }
+
+    /// Derivative by ξ.
+    #[inline]
+    pub fn slope(&self, x: f64) -> Vec3<f64> {
+        let k = &self.0;
+        std::array::from_fn(|c| k[1][c] + x * (2.0 * k[2][c] + x * 3.0 * k[3][c]))
+    }
+}
+
+/// A stretch [from, to] of ξ in contact; `moving` tells which of its ends are roots of the gap.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Arc {
+    /// Its begin.
+    pub from: f64,
+    /// Its end.
+    pub to: f64,
+    /// Whether begin and end move with the shape.
+    pub moving: [bool; 2],
+}
+
+/// A curve against one face.
+#[derive(Clone, Copy, Debug)]
+pub struct Touch<'a> {
+    /// The surface.
+    pub surface: &'a Surface,
+    /// Its face.
+    pub face: Face,
+    /// The curve.
+    pub curve: &'a Cubic,
+}
+
+impl Touch<'_> {
+    /// Gap at ξ and its derivative by ξ.
+    #[inline]
+    pub fn gap(&self, x: f64) -> (f64, f64) {
+        let (s, d) = (self.curve.at(x), self.curve.slope(x));
+        let rho = (s[1] * s[1] + s[2] * s[2]).sqrt();
+        let Face { axial, radial } = self.face;
+        (axial * s[0] + radial * (rho - self.surface.radius), axial * d[0] + radial * (s[1] * d[1] + s[2] * d[2]) / rho)
+    }
+
+    /// Calls `found` with the arcs of [`start`, 1] in contact, in order.
+    #[inline]
+    pub fn arcs(&self, start: f64, mut found: impl FnMut(Arc)) {
+        let mut open: Option<f64> = None;
+        let mut cross = |x: f64| match open.take() {
+            Some(from) => found(Arc { from, to: x, moving: [from > start, true] }),
+            None => open = Some(x),
+        };
+        let (mut x0, (mut g0, mut d0)) = (start, self.gap(start));
+        if g0 < 0.0 {
+            cross(start);
+        }
+        for k in 1..=INTERVALS {
+            let x1 = k as f64 / INTERVALS as f64;
+            let (g1, d1) = self.gap(x1);
+            if (g0 < 0.0) != (g1 < 0.0) {
+                cross(root(|x| self.gap(x).0, (x0, g0), (x1, g1)));
+            } else if (d0 < 0.0) != (d1 < 0.0) && (d0 < 0.0) == (g0 >= 0.0) {
+                // An extremum towards the other side; if it lies beyond the gap's own scale nothing can have crossed.
+                let x = root(|x| self.gap(x).1, (x0, d0), (x1, d1));
+                let g = self.gap(x).0;
+                if (g < 0.0) != (g0 < 0.0) {
+                    cross(root(|x| self.gap(x).0, (x0, g0), (x, g)));
+                    cross(root(|x| self.gap(x).0, (x, g), (x1, g1)));
+                }
+            }
+            (x0, g0, d0) = (x1, g1, d1);
+        }
+        if let Some(from) = open {
+            found(Arc { from, to: 1.0, moving: [from > start, false] });
+        }
+    }
+}
+
+/// A root of `f` in a bracket of (x, f(x)), by the Illinois form of the false position.
+fn root(f: impl Fn(f64) -> f64, (mut a, mut fa): (f64, f64), (mut b, mut fb): (f64, f64)) -> f64 {
+    for _ in 0..60 {
+        let x = (a * fb - b * fa) / (fb - fa);
+        if !(x > a.min(b) && x < a.max(b)) || (b - a).abs() < 1e-15 {
+            break;
+        }
+        let fx = f(x);
+        if fx == 0.0 {
+            return x;
+        }
+        if (fx < 0.0) != (fb < 0.0) {
+            (a, fa) = (b, fb);
+        } else {
+            fa *= 0.5;
+        }
+        (b, fb) = (x, fx);
+    }
+    b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Contact;
+
+    #[test]
+    fn exact_arcs_end_on_the_surface() {
+        let surface = Surface {
+            centre: [0.0; 3],
+            basis: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            radius: 1.0,
+            law: Contact { stiffness: 1.0, damping: 0.0, exponent: 1.5 },
+            groove: None,
+            friction: None,
+        };
+        // A straight line dipping `depth` below the top between two samples.
+        for depth in [1e-9, 1e-3, 0.1] {
+            let up = 1.0 - depth;
+            let line = [[0.0, up, -0.88], [0.0, 0.0, 2.0], [0.0, up, 1.12], [0.0, 0.0, 2.0]];
+            let curve = Cubic::hermite(&line, 1.0);
+            let touch = Touch { surface: &surface, face: surface.faces().0[0], curve: &curve };
+            let mut arcs = vec![];
+            touch.arcs(0.0, |a| arcs.push(a));
+            assert_eq!(arcs.len(), 1, "{depth}");
+            let half = 0.5 * (1.0 - up * up).sqrt();
+            assert!((arcs[0].from - (0.44 - half)).abs() < 1e-12 && (arcs[0].to - (0.44 + half)).abs() < 1e-12, "{depth}: {arcs:?}");
+            assert_eq!(arcs[0].moving, [true, true]);
+        }
+    }
+}

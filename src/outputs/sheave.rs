@@ -1,0 +1,143 @@
+//! What a sheave feels, and where the cable lies on it.
+
+use super::SheaveOutputs;
+use super::observe::{span_tension, tangent_at};
+use crate::contact::surface::Surface;
+use crate::math::lanes::{Vec3, dot, mat_vec};
+use crate::system::contact::{SurfaceFrame, near, touching};
+use crate::system::{Environment, System, gather};
+use nalgebra::Vector3;
+
+/// Samples per element along a contact arc.
+const SAMPLES: usize = 6;
+/// Bending lengths √(EI/T) from the end of contact to where the cable counts as straight.
+const STRAIGHT: f64 = 3.0;
+/// The most of a contact arc that counts as run-in at either end.
+const RUN_IN: f64 = 0.25;
+
+/// Turns a vector from a surface's axes into ship axes.
+pub fn to_ship(surface: &Surface, v: &Vec3<f64>) -> Vector3<f64> {
+    Vector3::from_fn(|c, _| (0..3).map(|k| surface.basis[k][c] * v[k]).sum())
+}
+
+/// First and last arc length in contact with surface `index`, m.
+pub fn contact_arc(system: &System, env: &Environment, u: &[f64], index: usize) -> Option<(f64, f64)> {
+    let surface = &system.surfaces[index];
+    let frame = SurfaceFrame::new(surface, env, true);
+    let mut arc: Option<(f64, f64)> = None;
+    for (e, &l) in system.chain.lengths.iter().enumerate() {
+        let slots = gather(u, e);
+        if !near(surface, &frame, &slots, l) {
+            continue;
+        }
+        let (_, curve) = frame.shape(&slots, l);
+        touching(surface, &curve, e, |_, face, a| {
+            // A face may be "touched" beyond the groove's extent, where it bears nothing.
+            let bears = (0..=SAMPLES).any(|k| {
+                let x = a.from + (a.to - a.from) * (k as f64 + 0.5) / (SAMPLES + 1) as f64;
+                surface.load::<false>(face, &curve.at(x), &[0.0; 3], 0.0).is_some()
+            });
+            if bears {
+                let (from, to) = (system.arc[e] + a.from * l, system.arc[e] + a.to * l);
+                arc = Some(arc.map_or((from, to), |(f, t)| (f.min(from), t.max(to))));
+            }
+        });
+    }
+    arc
+}
+
+/// Fills `out` for the sheave that is surface `index`; `neighbours` are the contact arcs before and after it on the cable (or its ends).
+pub fn sheave(system: &System, env: &Environment, u: &[f64], w: &[f64], index: usize, neighbours: (f64, f64), out: &mut SheaveOutputs) {
+    let surface = &system.surfaces[index];
+    let load = &system.surface_loads[index];
+    let force = -to_ship(surface, &load.force);
+    *out = SheaveOutputs {
+        force,
+        moment: -to_ship(surface, &load.moment),
+        normal_force: force.norm(),
+        flank_force: load.faces,
+        ..SheaveOutputs::default()
+    };
+    let frame = SurfaceFrame::new(surface, env, true);
+    out.out_of_groove = climbed_out(system, surface, &frame, u);
+    let Some((begin, end)) = contact_arc(system, env, u, index) else { return };
+    out.in_contact = true;
+    out.tension_in = span_tension(system, u, w, begin);
+    out.tension_out = span_tension(system, u, w, end);
+    let at = |s: f64| {
+        let (e, x) = system.element_at(s);
+        let l = system.chain.lengths[e];
+        (frame.shape(&gather(u, e), l).1, x, l)
+    };
+    // Angles, followed along the arc so that more than half a turn is counted right.
+    let angle = |p: &Vec3<f64>| p[2].atan2(p[1]);
+    let place = |s: f64| {
+        let (curve, x, _) = at(s);
+        curve.at(x)
+    };
+    let follow = |from: f64, to: f64, direction: &dyn Fn(f64) -> Vec3<f64>| {
+        let elements = system.element_at(to).0 - system.element_at(from).0 + 1;
+        let n = SAMPLES * elements;
+        let (mut sum, mut last) = (0.0, angle(&direction(from)));
+        for k in 1..=n {
+            let next = angle(&direction(from + (to - from) * k as f64 / n as f64));
+            let turn = std::f64::consts::TAU;
+            sum += (next - last) - turn * ((next - last) / turn).round();
+            last = next;
+        }
+        sum
+    };
+    let swept = follow(begin, end, &place);
+    out.contact_begin = angle(&place(begin));
+    out.contact_end = out.contact_begin + swept;
+    out.wrap_angle = swept.abs();
+    let section = &system.chain.section;
+    let straight = |tension: f64| STRAIGHT * (section.ei / tension.abs().max(1e-12 * section.ea)).sqrt();
+    let first = begin - straight(out.tension_in).min(0.5 * (begin - neighbours.0).max(0.0));
+    let last = end + straight(out.tension_out).min(0.5 * (neighbours.1 - end).max(0.0));
+    let tangent = |s: f64| mat_vec(&frame.rotation, &tangent_at(system, u, s));
+    // With no span before it the contact starts at the first node.
+    let first = if system.element_at(begin).0 == 0 && begin < 2e-3 * system.chain.lengths[0] { 0.0 } else { first };
+    out.turn_angle = follow(first, last, &tangent).abs();
+    // Line loads: the greatest anywhere, the least away from the run-in at both ends.
+    let (run_in, run_out) = (
+        straight(out.tension_in).min(RUN_IN * (end - begin)),
+        straight(out.tension_out).min(RUN_IN * (end - begin)),
+    );
+    let (faces, count) = surface.faces();
+    let n = SAMPLES * (system.element_at(end).0 - system.element_at(begin).0 + 1);
+    let (mut least, mut most) = (f64::INFINITY, 0.0f64);
+    for k in 0..=n {
+        let s = begin + (end - begin) * k as f64 / n as f64;
+        let p = place(s);
+        let mut f = [0.0; 3];
+        for face in &faces[..count] {
+            if let Some(l) = surface.load::<false>(*face, &p, &[0.0; 3], 0.0) {
+                (0..3).for_each(|c| f[c] += l.f[c]);
+            }
+        }
+        let size = dot(&f, &f).sqrt();
+        most = most.max(size);
+        if s > begin + run_in && s < end - run_out {
+            least = least.min(size);
+        }
+    }
+    out.line_load_max = most;
+    out.line_load_min = if least.is_finite() { least } else { 0.0 };
+}
+
+/// Whether some of the cable lies on the rim or beside the groove.
+fn climbed_out(system: &System, surface: &Surface, frame: &SurfaceFrame, u: &[f64]) -> bool {
+    let Some(groove) = surface.groove.filter(|g| g.depth.is_finite()) else { return false };
+    let rim = groove.half_width(groove.depth);
+    system.chain.lengths.iter().enumerate().any(|(e, &l)| {
+        let (_, curve) = frame.shape(&gather(u, e), l);
+        (0..=SAMPLES).any(|k| {
+            let s = curve.at(k as f64 / SAMPLES as f64);
+            let h = s[1].hypot(s[2]) - surface.radius;
+            let beside = s[0].abs() - rim;
+            let over_rim = h >= groove.depth && h < groove.depth + groove.diameter && beside.abs() < groove.diameter;
+            over_rim || h < groove.depth && beside > groove.diameter && beside < surface.radius
+        })
+    })
+}
