@@ -4,7 +4,7 @@
 //! d/dt (½ wᵀMw + U_elastic) = w·F + dU_elastic/dt + ½ wᵀṀw
 //! ```
 //!
-//! with F all forces, the elastic ones and the frame's inertia included; U counts the contact's elastic energy too. What remains of the difference is the integrator's doing.
+//! with F all forces, the elastic ones and the frame's inertia included. What remains of the difference is the integrator's doing.
 
 use crate::system::Tally;
 

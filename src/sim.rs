@@ -169,7 +169,7 @@ impl Simulation {
         match &scene.initial {
             Initial::Equilibrium => {
                 let down = Vector3::new(0.0, 0.0, if net_weight(scene) >= 0.0 { -1.0 } else { 1.0 });
-                state.u.copy_from_slice(&equilibrium::lay_out(system, time, &down));
+                state.u.copy_from_slice(&equilibrium::lay_out(system, time, &down).map_err(SimError::Start)?);
                 equilibrium::solve(system, time, &mut state.u, weight).map_err(SimError::Start)?;
             }
             Initial::Straight(direction) => {

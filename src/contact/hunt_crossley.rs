@@ -11,10 +11,6 @@ pub struct Pressure {
     pub by_depth: f64,
     /// ∂f/∂δ̇, N·s/m².
     pub by_rate: f64,
-    /// Its elastic part k δⁿ, N/m.
-    pub elastic: f64,
-    /// Energy of the elastic part k δⁿ⁺¹/(n + 1), J/m.
-    pub energy: f64,
 }
 
 /// Force per length at penetration `depth` (m) growing at `rate` (m/s).
@@ -32,12 +28,11 @@ pub fn pressure(law: &Contact, depth: f64, rate: f64) -> Pressure {
         depth.powf(law.exponent)
     };
     let elastic = law.stiffness * power;
-    let energy = elastic * depth / (law.exponent + 1.0);
     let gain = 1.0 + law.damping * rate;
     if gain <= 0.0 {
-        return Pressure { elastic, energy, ..Pressure::default() };
+        return Pressure::default();
     }
-    Pressure { force: elastic * gain, by_depth: law.exponent * elastic / depth * gain, by_rate: elastic * law.damping, elastic, energy }
+    Pressure { force: elastic * gain, by_depth: law.exponent * elastic / depth * gain, by_rate: elastic * law.damping }
 }
 
 #[cfg(test)]
@@ -56,8 +51,7 @@ mod tests {
             assert!((at.force - 1e6 * d.powf(exponent) * 1.28).abs() < 1e-12 * at.force);
             let fd = (pressure(&law, d + h, v).force - pressure(&law, d - h, v).force) / (2.0 * h);
             let fv = (pressure(&law, d, v + h).force - pressure(&law, d, v - h).force) / (2.0 * h);
-            let fe = (pressure(&law, d + h, v).energy - pressure(&law, d - h, v).energy) / (2.0 * h);
-            for (difference, exact) in [(fd, at.by_depth), (fv, at.by_rate), (fe, at.elastic)] {
+            for (difference, exact) in [(fd, at.by_depth), (fv, at.by_rate)] {
                 assert!((difference / exact - 1.0).abs() < 1e-7); // h² truncation, rounding
             }
         }

@@ -107,10 +107,6 @@ pub struct PointLoad {
     pub f: Vec3<f64>,
     /// Its part normal to the face, N/m.
     pub normal: f64,
-    /// Elastic energy, J/m, and its rate, W/m.
-    pub energy: f64,
-    /// Rate of that energy.
-    pub power: f64,
     /// ∂f/∂s at fixed relative velocity.
     pub ds: Mat3<f64>,
     /// ∂f/∂v.
@@ -174,13 +170,11 @@ impl Surface {
         let (e, t): (Vec3<f64>, Vec3<f64>) = ([0.0, e1, e2], [0.0, -e2, e1]);
         let n = [face.axial, face.radial * e1, face.radial * e2];
         let vn = dot(&n, v);
-        let Pressure { force, by_depth, by_rate, elastic, energy } = hunt_crossley::pressure(&self.law, depth, -vn);
+        let Pressure { force, by_depth, by_rate } = hunt_crossley::pressure(&self.law, depth, -vn);
         let normal = weight * force;
         let mut load = PointLoad {
             f: scale(normal, &n),
             normal,
-            energy: weight * energy,
-            power: -weight * elastic * vn + energy * (by_h * dot(&e, v) + by_y * v[0]),
             ds: zero_mat(),
             dv: zero_mat(),
         };
@@ -269,11 +263,6 @@ mod tests {
                             assert!((d - exact).abs() < 1e-6 * 1e5, "{surface:?} {face:?} ({i}, {j}): {d} against {exact}"); // 1e-6 of k
                         }
                     }
-                    // The energy's rate along v.
-                    let along = |s: f64| std::array::from_fn(|c| if c < 3 { x[c] + s * x[c + 3] } else { x[c] });
-                    let h = 1e-7;
-                    let d = (f(&along(h)).unwrap().energy - f(&along(-h)).unwrap().energy) / (2.0 * h);
-                    assert!((d - l.power).abs() < 1e-6 * l.power.abs(), "{d} against {}", l.power);
                 }
             }
         }

@@ -1,52 +1,171 @@
-//! First shapes: along the drum as far as needed, then straight.
+//! First shapes: the shortest way along drum and sheaves, then straight.
 
-use crate::math::jet::Jet;
 use crate::system::{FirstEnd, System};
 use nalgebra::Vector3;
+use std::f64::consts::TAU;
 
-/// Positions relative to the first node and slopes, six per node: on the drum in the sense of its winding until the tangent points along
-/// `direction` (a world unit vector), straight from there; unstretched.
-pub fn lay_out(system: &System, t: f64, direction: &Vector3<f64>) -> Vec<f64> {
+/// Rounds in which neighbouring tangent points are fitted to each other.
+const ROUNDS: usize = 40;
+/// A turn that misses a whole one by less than this is none: the cable leaves a little before its first node's tangent, rad.
+const ALMOST_ROUND: f64 = 0.25 * std::f64::consts::PI;
+
+/// A circle in ship axes that the cable goes round.
+#[derive(Clone, Copy, Debug)]
+struct Wheel {
+    centre: Vector3<f64>,
+    /// Axis, "up", axis × up.
+    basis: [Vector3<f64>; 3],
+    radius: f64,
+    /// Sense of travel about the axis.
+    sense: f64,
+    /// Angles from "up" where the cable comes and goes; the going one further in the sense of travel.
+    from: f64,
+    to: f64,
+    /// Height along the axis at which it comes.
+    axial: f64,
+}
+
+impl Wheel {
+    fn point(&self, angle: f64) -> Vector3<f64> {
+        self.centre + self.basis[0] * self.axial + (self.basis[1] * angle.cos() + self.basis[2] * angle.sin()) * self.radius
+    }
+
+    fn tangent(&self, angle: f64) -> Vector3<f64> {
+        (self.basis[2] * angle.cos() - self.basis[1] * angle.sin()) * self.sense
+    }
+
+    /// Components of a point or direction along "up" and axis × up.
+    fn flat(&self, v: &Vector3<f64>) -> (f64, f64) {
+        (self.basis[1].dot(v), self.basis[2].dot(v))
+    }
+
+    /// Angle at which a line from `p` touches the wheel (coming, or going where `going`); `p`'s own angle where it lies within.
+    fn touch(&self, p: &Vector3<f64>, going: bool) -> f64 {
+        let (up, side) = self.flat(&(p - self.centre));
+        let (distance, angle) = (up.hypot(side), side.atan2(up));
+        let open = if distance > self.radius { (self.radius / distance).acos() } else { 0.0 };
+        angle + if going { -open } else { open } * self.sense
+    }
+
+    /// Angle at which the cable leaves towards a direction.
+    fn release(&self, d: &Vector3<f64>) -> f64 {
+        let (up, side) = self.flat(d);
+        (-up * self.sense).atan2(side * self.sense)
+    }
+
+    fn turn(&self) -> f64 {
+        let turn = (self.sense * (self.to - self.from)).rem_euclid(TAU);
+        if turn > TAU - ALMOST_ROUND { 0.0 } else { turn }
+    }
+
+    fn arc(&self) -> f64 {
+        self.turn() * self.radius
+    }
+}
+
+/// Positions relative to the first node and slopes, six per node: along drum and sheaves in their order, in the sense of winding and on the
+/// side that the scene says, straight between them and beyond the last along `direction` (a world unit vector); unstretched.
+///
+/// # Errors
+/// When the cable is too short to reach the last sheave, or starts inside one.
+pub fn lay_out(system: &System, t: f64, direction: &Vector3<f64>) -> Result<Vec<f64>, String> {
     let env = system.environment(t);
     let rotation = nalgebra::Matrix3::from_fn(|i, j| env.frame.rotation[i][j].0[0]);
     let d = rotation.transpose() * direction;
-    let mut out = Vec::with_capacity(6 * system.nodes());
-    let (mut arc, mut radius, mut wound) = (0.0, 1.0, None);
+    let first = Vector3::from(env.frame.locate(&env.base.map(|j| j.0[0])));
+    let mut wheels: Vec<Wheel> = vec![];
+    let mut drum = false;
     // A held slope too: a straight shape across it would stay on the saddle between its two sides, the slope shrunk to nothing.
     if let FirstEnd::Winch { geometry, drive, contact, clamp } = &system.first
         && (*contact || *clamp > 0.0)
     {
-        // Angle over which the tangent turns from the first node to `direction`, in the sense of winding.
+        let basis = [geometry.axis, geometry.up, geometry.side].map(Vector3::from);
+        let (centre, radius, sense) = (Vector3::from(geometry.centre), geometry.radius, geometry.sense);
         let phi = drive.angle(t).0[0];
-        let side = Vector3::from(geometry.side);
-        let up = Vector3::from(geometry.up);
-        let (x, y) = (side.dot(&d), up.dot(&d));
-        // Tangent at angle θ: sense (cos θ side − sin θ up).
-        let goal = (-y * geometry.sense).atan2(x * geometry.sense);
-        let mut turn = (geometry.sense * (goal - phi)).rem_euclid(std::f64::consts::TAU);
-        if turn > 1.75 * std::f64::consts::PI || x.hypot(y) < 1e-9 {
-            turn = 0.0; // already a little past it
-        }
-        arc = turn * geometry.radius;
-        radius = geometry.radius;
-        wound = Some((geometry, phi));
+        wheels.push(Wheel { centre, basis, radius, sense, from: phi, to: phi, axial: basis[0].dot(&(first - centre)) });
+        drum = true;
     }
-    let on_drum = |s: f64| {
-        wound.map(|(g, phi)| {
-            let (p, t) = g.rim(Jet::constant(phi + g.sense * s / radius));
-            (Vector3::from(p.map(|j| j.0[0])), Vector3::from(t.map(|j| j.0[0])))
-        })
-    };
-    let origin = on_drum(0.0).map_or_else(Vector3::zeros, |(p, _)| p);
-    let (leave, _) = on_drum(arc).unwrap_or((Vector3::zeros(), d));
-    for &s in &system.arc {
-        let (p, t) = match on_drum(s) {
-            Some(pt) if s < arc => pt,
-            _ => (leave + d * (s - arc), d),
+    let sheaves = &system.surfaces[system.surfaces.len() - system.over.len()..];
+    for (k, (surface, &over)) in sheaves.iter().zip(&system.over).enumerate() {
+        let basis = surface.basis.map(Vector3::from);
+        let centre = Vector3::from(surface.centre);
+        let from = wheels.last().map_or(first, |w: &Wheel| w.centre);
+        let to = sheaves.get(k + 1).map_or_else(|| centre + d * 10.0 * surface.radius, |s| Vector3::from(s.centre));
+        // Over the top from where it comes to where it goes; the other way about for "under".
+        let across = basis[2].dot(&(to - from));
+        let sense = if (across >= 0.0) == over { 1.0 } else { -1.0 };
+        wheels.push(Wheel { centre, basis, radius: surface.radius, sense, from: 0.0, to: 0.0, axial: 0.0 });
+        let inside = surface.radius - (first - centre).cross(&basis[0]).norm();
+        if inside > 1e-6 * surface.radius && surface.groove.is_none_or(|g| g.depth.is_infinite() || surface.beyond(&local(surface, &first)) < 0.0) {
+            return Err(format!(
+                "the cable's first node at ({:.4}, {:.4}, {:.4}) m (ship axes) lies {inside:.4} m inside sheave \"{}\", whose radius to the \
+                 cable's centreline is {:.4} m",
+                first.x, first.y, first.z, system.names[k], surface.radius
+            ));
+        }
+    }
+    let count = wheels.len();
+    for _ in 0..ROUNDS {
+        for k in 0..count {
+            let mut w = wheels[k];
+            if k > 0 || !drum {
+                let before = if k == 0 { first } else { wheels[k - 1].point(wheels[k - 1].to) };
+                w.from = w.touch(&before, false);
+            }
+            w.to = if k + 1 < count {
+                let next = wheels[k + 1];
+                w.touch(&next.point(next.from), true)
+            } else if w.flat(&d) == (0.0, 0.0) {
+                w.from
+            } else {
+                w.release(&d)
+            };
+            wheels[k] = w;
+        }
+    }
+    // The way as pieces: straight to a wheel, round it, and so on.
+    let length = system.arc[system.arc.len() - 1];
+    let mut reach = vec![];
+    let (mut s, mut at) = (0.0, first);
+    for (k, w) in wheels.iter().enumerate() {
+        let come = w.point(w.from);
+        let span = if k == 0 && drum { 0.0 } else { (come - at).norm() };
+        reach.push((s, s + span, at, *w));
+        s += span + w.arc();
+        at = w.point(w.from + w.sense * w.turn());
+        if s > length {
+            let name = (k + 1).checked_sub(1 + usize::from(drum)).map_or("the drum".into(), |i| format!("sheave \"{}\"", system.names[i]));
+            if !(k == 0 && drum) {
+                return Err(format!("the cable of {length} m cannot reach beyond {name}: the way there is {s:.4} m long"));
+            }
+        }
+    }
+    let mut out = Vec::with_capacity(6 * system.nodes());
+    for &node in &system.arc {
+        let piece = reach.iter().rev().find(|p| node >= p.0 || p.0 == 0.0);
+        let (p, t) = match piece {
+            None => (first + d * node, d),
+            Some((begin, come, from, w)) => {
+                if node < *come {
+                    let way = (w.point(w.from) - from) / (come - begin);
+                    (from + way * (node - begin), way)
+                } else if node - come < w.arc() {
+                    let angle = w.from + w.sense * (node - come) / w.radius;
+                    (w.point(angle), w.tangent(angle))
+                } else {
+                    // Beyond the last wheel; before another the next piece has taken over.
+                    (at + d * (node - s), d)
+                }
+            }
         };
-        let (p, t) = (rotation * (p - origin), rotation * t);
+        let (p, t) = (rotation * (p - first), rotation * t);
         out.extend_from_slice(&[p.x, p.y, p.z, t.x, t.y, t.z]);
     }
     out[..3].fill(0.0);
-    out
+    Ok(out)
+}
+
+fn local(surface: &crate::contact::surface::Surface, p: &Vector3<f64>) -> [f64; 3] {
+    let s = p - Vector3::from(surface.centre);
+    std::array::from_fn(|i| Vector3::from(surface.basis[i]).dot(&s))
 }

@@ -3,6 +3,9 @@
 //! Each iteration is one linearly implicit Euler step from rest, (M + Δ D + Δ² K) δ = Δ² F(u): a heavily damped motion for small Δ, Newton's
 //! method for large Δ (C. T. Kelley & D. E. Keyes, SIAM J. Numer. Anal. 35 (1998) 508-523). Δ grows as the residual falls. The mass term keeps
 //! slack and unbent parts regular.
+//!
+//! A cable much stiffer than its load can hardly turn without a glimpse of enormous tension, so the first rounds are made with one that yields
+//! by percents; its shape is nearly right, and each stiffer one starts from the last.
 
 mod layout;
 
@@ -13,6 +16,8 @@ use crate::system::{Matrices, System};
 
 /// Iterations before giving up.
 const ITERATIONS: usize = 4000;
+/// And before passing on from a soft round.
+const ROUND: usize = 300;
 /// Greatest change of a slope per iteration; larger ones are scaled back.
 const TURN: f64 = 0.25;
 /// Residual over the load at which the state counts as an equilibrium.
@@ -21,6 +26,11 @@ const TOLERANCE: f64 = 1e-10;
 const ROUNDING: f64 = 2e-15;
 /// Factor by which the residual may grow in an accepted iteration.
 const GROWTH: f64 = 2.0;
+/// EA over the load in the first round, and the factor between rounds.
+const SOFT: f64 = 30.0;
+const STIFFEN: f64 = 30.0;
+/// Residual over the load that is good enough before the last round.
+const COARSE: f64 = 1e-3;
 
 /// Moves `u` (relative to the first node) to the equilibrium at time `t` under the boundary's present velocity.
 ///
@@ -28,12 +38,24 @@ const GROWTH: f64 = 2.0;
 /// What remained unbalanced, where, and what to try.
 pub fn solve(system: &mut System, t: f64, u: &mut [f64], load: f64) -> Result<usize, String> {
     system.frozen = true;
-    let outcome = iterate(system, t, u, load);
+    let section = system.chain.section;
+    // Soft rounds may push: a slack stretch would have no axial stiffness at all.
+    system.chain.section.tension_only = false;
+    let mut soft = SOFT * load;
+    let mut count = 0;
+    while 3.0 * soft < section.ea {
+        system.chain.section.ea = soft;
+        // What a soft round misses the stiffer ones must find.
+        count += iterate(system, t, u, load, COARSE, ROUND).unwrap_or(ROUND);
+        soft *= STIFFEN;
+    }
+    system.chain.section = section;
+    let outcome = iterate(system, t, u, load, TOLERANCE, ITERATIONS);
     system.frozen = false;
-    outcome
+    outcome.map(|n| n + count)
 }
 
-fn iterate(system: &mut System, t: f64, u: &mut [f64], load: f64) -> Result<usize, String> {
+fn iterate(system: &mut System, t: f64, u: &mut [f64], load: f64, tolerance: f64, iterations: usize) -> Result<usize, String> {
     let n = u.len();
     let zero = vec![0.0; n];
     let mut m = Matrices::zeros(n / 6);
@@ -48,10 +70,10 @@ fn iterate(system: &mut System, t: f64, u: &mut [f64], load: f64) -> Result<usiz
     };
     // Rounding of the internal forces bounds what can be asked for: slopes from positions lose the digits of length over element length.
     let finest = system.arc[system.arc.len() - 1] / shortest;
-    let small = (TOLERANCE * load).max(ROUNDING * finest * system.chain.section.ea);
+    let small = (tolerance * load).max(ROUNDING * finest * system.chain.section.ea);
     let mut delta = 1e-2;
     let mut worst = f64::INFINITY;
-    for iteration in 0..ITERATIONS {
+    for iteration in 0..iterations {
         system.linearize(t, u, &zero, &zero, &mut m, &mut f);
         worst = size(&f);
         if !worst.is_finite() {

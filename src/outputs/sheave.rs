@@ -93,17 +93,25 @@ pub fn sheave(system: &System, env: &Environment, u: &[f64], w: &[f64], index: u
     out.wrap_angle = swept.abs();
     let section = &system.chain.section;
     let straight = |tension: f64| STRAIGHT * (section.ei / tension.abs().max(1e-12 * section.ea)).sqrt();
-    let first = begin - straight(out.tension_in).min(0.5 * (begin - neighbours.0).max(0.0));
-    let last = end + straight(out.tension_out).min(0.5 * (neighbours.1 - end).max(0.0));
+    // No nearer than the mesh can straighten: the element in which contact ends bends as a whole.
+    let beyond = |s: f64, tension: f64| straight(tension).max(system.chain.lengths[system.element_at(s).0]);
+    let first = begin - beyond(begin, out.tension_in).min(0.5 * (begin - neighbours.0).max(0.0));
+    let last = end + beyond(end, out.tension_out).min(0.5 * (neighbours.1 - end).max(0.0));
     let tangent = |s: f64| mat_vec(&frame.rotation, &tangent_at(system, u, s));
     // With no span before it the contact starts at the first node.
     let first = if system.element_at(begin).0 == 0 && begin < 2e-3 * system.chain.lengths[0] { 0.0 } else { first };
     out.turn_angle = follow(first, last, &tangent).abs();
-    // Line loads: the greatest anywhere, the least away from the run-in at both ends.
-    let (run_in, run_out) = (
-        straight(out.tension_in).min(RUN_IN * (end - begin)),
-        straight(out.tension_out).min(RUN_IN * (end - begin)),
-    );
+    // Line loads: the greatest anywhere, the least away from both ends, where a load begins at nothing: over the length that a straight cable
+    // needs to sink in by the present depth, and to bend.
+    let sunk = (0..=SAMPLES)
+        .map(|k| {
+            let p = place(begin + (end - begin) * k as f64 / SAMPLES as f64);
+            surface.radius - p[1].hypot(p[2])
+        })
+        .fold(0.0, f64::max);
+    let sink = 2.0 * (2.0 * surface.radius * sunk).sqrt();
+    let run = |tension: f64| (straight(tension) + sink).min(RUN_IN * (end - begin));
+    let (run_in, run_out) = (run(out.tension_in), run(out.tension_out));
     let (faces, count) = surface.faces();
     let n = SAMPLES * (system.element_at(end).0 - system.element_at(begin).0 + 1);
     let (mut least, mut most) = (f64::INFINITY, 0.0f64);
@@ -135,9 +143,10 @@ fn climbed_out(system: &System, surface: &Surface, frame: &SurfaceFrame, u: &[f6
         (0..=SAMPLES).any(|k| {
             let s = curve.at(k as f64 / SAMPLES as f64);
             let h = s[1].hypot(s[2]) - surface.radius;
-            let beside = s[0].abs() - rim;
-            let over_rim = h >= groove.depth && h < groove.depth + groove.diameter && beside.abs() < groove.diameter;
-            over_rim || h < groove.depth && beside > groove.diameter && beside < surface.radius
+            // How far outside the flank, or its continuation above the rim.
+            let outside = s[0].abs() - groove.half_width(h);
+            let on_rim = h >= groove.depth && h < groove.depth + groove.diameter && outside > 0.0 && outside < groove.diameter;
+            on_rim || h < groove.depth && s[0].abs() > rim + groove.diameter && s[0].abs() < rim + surface.radius
         })
     })
 }

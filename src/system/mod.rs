@@ -107,6 +107,10 @@ pub struct System {
     pub forces: Vec<[f64; 12]>,
     /// Drum and sheaves: what the cable can touch.
     pub surfaces: Vec<Surface>,
+    /// The sheaves' names, and whether the cable passes over them (or under).
+    pub names: Vec<String>,
+    /// See `names`.
+    pub over: Vec<bool>,
     /// What each of them feels, of the last evaluation.
     pub surface_loads: Vec<SurfaceLoad>,
     /// Forces of drum and sheaves on the elements' slots, of the last evaluation.
@@ -163,6 +167,8 @@ impl System {
             body_force: Default::default(),
             forces: vec![[0.0; 12]; n],
             contact_forces: vec![[0.0; 12]; n],
+            names: scene.sheaves.iter().map(|s| s.name.clone()).collect(),
+            over: scene.sheaves.iter().map(|s| s.over).collect(),
             surface_loads: vec![SurfaceLoad::default(); surfaces.len()],
             surfaces,
             lump_force: [0.0; 3],

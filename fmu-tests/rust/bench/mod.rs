@@ -119,7 +119,7 @@ pub fn at_rest(scene: &Scene, force: [f64; 3]) -> (System, Vec<f64>) {
 pub fn settled(system: &mut System, scene: &Scene, force: [f64; 3]) -> Vec<f64> {
     system.body_force = force.map(|value| Ramp { value, rate: 0.0 });
     let load = (system.cable_mass() + system.lump.mass) * scene.gravity + Vector3::from(force).norm();
-    let mut u = equilibrium::lay_out(system, 0.0, &-Vector3::z());
+    let mut u = equilibrium::lay_out(system, 0.0, &-Vector3::z()).expect("a shape");
     equilibrium::solve(system, 0.0, &mut u, load).expect("an equilibrium");
     u
 }
