@@ -170,13 +170,13 @@ pub fn dense(m: &fairlead::linalg::BlockTridiagonal) -> DMatrix<f64> {
 /// Angular frequencies, ascending, of small motions in world component `axis` about a shape at rest in which that component is decoupled
 /// from the others. From the eigenvalues of L⁻¹ M L⁻ᵀ with K = L Lᵀ: these are 1/ω², of which the greatest, so the lowest ω, come out to
 /// rounding.
-pub fn frequencies(system: &mut System, u: &[f64], axis: usize) -> Vec<f64> {
+pub fn frequencies(system: &mut System, u: &[f64], axis: usize, held_end: bool) -> Vec<f64> {
     use fairlead::integrator::Problem;
     let n = u.len();
     let zero = vec![0.0; n];
     let (mut m, mut f) = (Matrices::zeros(n / 6), zero.clone());
     system.linearize(0.0, u, &zero, &zero, &mut m, &mut f);
-    let rows: Vec<usize> = (0..n).filter(|i| i % 3 == axis && *i >= 3).collect();
+    let rows: Vec<usize> = (0..n).filter(|i| i % 3 == axis && *i >= 3 && !(held_end && *i == n - 6 + axis)).collect();
     let pick = |m: &DMatrix<f64>| DMatrix::from_fn(rows.len(), rows.len(), |i, j| m[(rows[i], rows[j])]);
     let (k, m) = (pick(&dense(&m.stiffness)), pick(&dense(&m.mass)));
     let l = k.cholesky().expect("a stable shape").l();
