@@ -172,12 +172,7 @@ impl Surface {
         let vn = dot(&n, v);
         let Pressure { force, by_depth, by_rate } = hunt_crossley::pressure(&self.law, depth, -vn);
         let normal = weight * force;
-        let mut load = PointLoad {
-            f: scale(normal, &n),
-            normal,
-            ds: zero_mat(),
-            dv: zero_mat(),
-        };
+        let mut load = PointLoad { f: scale(normal, &n), normal, ds: zero_mat(), dv: zero_mat() };
         let vt = dot(&t, v);
         // ∂n/∂s = (n_r/ρ) t tᵀ, so ∂δ̇/∂s = −(n_r/ρ) v_t t.
         let hoop = face.radial / rho;

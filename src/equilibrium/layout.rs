@@ -96,7 +96,9 @@ pub fn lay_out(system: &System, t: f64, direction: &Vector3<f64>) -> Result<Vec<
         let sense = if (across >= 0.0) == over { 1.0 } else { -1.0 };
         wheels.push(Wheel { centre, basis, radius: surface.radius, sense, from: 0.0, to: 0.0, axial: 0.0 });
         let inside = surface.radius - (first - centre).cross(&basis[0]).norm();
-        if inside > 1e-6 * surface.radius && surface.groove.is_none_or(|g| g.depth.is_infinite() || surface.beyond(&local(surface, &first)) < 0.0) {
+        if inside > 1e-6 * surface.radius
+            && surface.groove.is_none_or(|g| g.depth.is_infinite() || surface.beyond(&local(surface, &first)) < 0.0)
+        {
             return Err(format!(
                 "the cable's first node at ({:.4}, {:.4}, {:.4}) m (ship axes) lies {inside:.4} m inside sheave \"{}\", whose radius to the \
                  cable's centreline is {:.4} m",

@@ -12,6 +12,8 @@ mod layout;
 pub use layout::lay_out;
 
 use crate::integrator::Problem;
+use crate::math::lanes::{axpy, mat_vec};
+use crate::system::contact::SurfaceFrame;
 use crate::system::{Matrices, System};
 
 /// Iterations before giving up.
@@ -20,6 +22,8 @@ const ITERATIONS: usize = 4000;
 const ROUND: usize = 300;
 /// Greatest change of a slope per iteration; larger ones are scaled back.
 const TURN: f64 = 0.25;
+/// Greatest move near a drum or sheave per iteration, over its radius.
+const NEAR: f64 = 0.2;
 /// Residual over the load at which the state counts as an equilibrium.
 const TOLERANCE: f64 = 1e-10;
 /// Rounding of a slope over the ratio of cable to element length, with room for sums of several terms.
@@ -59,6 +63,27 @@ pub fn solve(system: &mut System, t: f64, u: &mut [f64], load: f64) -> Result<us
     outcome.map(|n| n + count)
 }
 
+/// The share of `step` after which no node has jumped through drum or sheave.
+fn careful(system: &System, t: f64, u: &[f64], step: &[f64]) -> f64 {
+    let mut share = 1.0f64;
+    if system.surfaces.is_empty() {
+        return share;
+    }
+    let env = system.environment(t);
+    for surface in &system.surfaces {
+        let frame = SurfaceFrame::new(surface, &env, true);
+        for (u, s) in u.chunks_exact(6).zip(step.chunks_exact(6)) {
+            let moved = (s[0] * s[0] + s[1] * s[1] + s[2] * s[2]).sqrt();
+            let at = axpy(&mat_vec(&frame.rotation, &[u[0], u[1], u[2]]), 1.0, &frame.base);
+            let allowed = (NEAR * surface.radius).max(0.5 * surface.least_gap(&at).abs());
+            if moved > allowed {
+                share = share.min(allowed / moved);
+            }
+        }
+    }
+    share
+}
+
 fn iterate(system: &mut System, t: f64, u: &mut [f64], load: f64, tolerance: f64, iterations: usize) -> Result<usize, String> {
     let n = u.len();
     let zero = vec![0.0; n];
@@ -93,7 +118,7 @@ fn iterate(system: &mut System, t: f64, u: &mut [f64], load: f64, tolerance: f64
                 }
                 a.solve(&mut step);
                 let turn = step.chunks_exact(6).flat_map(|s| &s[3..]).fold(0.0f64, |m, x| m.max(x.abs()));
-                let scale = (TURN / turn).min(1.0);
+                let scale = (TURN / turn).min(careful(system, t, u, &step)).min(1.0);
                 if turn.is_finite() {
                     for ((t, u), s) in trial.iter_mut().zip(&*u).zip(&step) {
                         *t = u + scale * s;

@@ -102,16 +102,16 @@ pub fn sheave(system: &System, env: &Environment, u: &[f64], w: &[f64], index: u
     let first = if system.element_at(begin).0 == 0 && begin < 2e-3 * system.chain.lengths[0] { 0.0 } else { first };
     out.turn_angle = follow(first, last, &tangent).abs();
     // Line loads: the greatest anywhere, the least away from both ends, where a load begins at nothing: over the length that a straight cable
-    // needs to sink in by the present depth, and to bend.
+    // needs to sink in by the present depth, to bend, and that the mesh resolves.
     let sunk = (0..=SAMPLES)
         .map(|k| {
             let p = place(begin + (end - begin) * k as f64 / SAMPLES as f64);
             surface.radius - p[1].hypot(p[2])
         })
         .fold(0.0, f64::max);
-    let sink = 2.0 * (2.0 * surface.radius * sunk).sqrt();
-    let run = |tension: f64| (straight(tension) + sink).min(RUN_IN * (end - begin));
-    let (run_in, run_out) = (run(out.tension_in), run(out.tension_out));
+    let sink = 4.0 * (2.0 * surface.radius * sunk).sqrt();
+    let run = |s: f64, tension: f64| (straight(tension) + sink + system.chain.lengths[system.element_at(s).0]).min(RUN_IN * (end - begin));
+    let (run_in, run_out) = (run(begin, out.tension_in), run(end, out.tension_out));
     let (faces, count) = surface.faces();
     let n = SAMPLES * (system.element_at(end).0 - system.element_at(begin).0 + 1);
     let (mut least, mut most) = (f64::INFINITY, 0.0f64);

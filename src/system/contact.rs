@@ -78,8 +78,7 @@ impl SurfaceFrame {
         if self.frozen {
             return Cubic([[0.0; 3]; 4]);
         }
-        let mut q: [Vec3<f64>; 4] =
-            std::array::from_fn(|i| axpy(&mat_vec(&self.rotation, &w[i]), 1.0, &mat_vec(&self.turn, &relative[i])));
+        let mut q: [Vec3<f64>; 4] = std::array::from_fn(|i| axpy(&mat_vec(&self.rotation, &w[i]), 1.0, &mat_vec(&self.turn, &relative[i])));
         for i in [0, 2] {
             q[i] = axpy(&q[i], 1.0, &self.base_velocity);
         }

@@ -10,8 +10,8 @@ mod matrices;
 mod points;
 mod wetting;
 
-pub use elements::{Chain, Tally, Wetness, gather};
 pub use contact::SurfaceLoad;
+pub use elements::{Chain, Tally, Wetness, gather};
 pub use environment::Environment;
 pub use matrices::Matrices;
 pub use points::ElementPoint;
