@@ -1,6 +1,6 @@
 //! Storage, products and LU solution of a block-tridiagonal system (Golub & Van Loan, Matrix Computations, 4.5.1).
 
-use crate::math::lanes::widest;
+use crate::math::lanes::{Kernel, widest};
 
 /// Unknowns per block.
 pub const BLOCK: usize = 6;
@@ -64,20 +64,13 @@ impl BlockTridiagonal {
 
     /// self = m + g d + g² k.
     pub fn combine(&mut self, m: &Self, d: &Self, k: &Self, g: f64) {
-        widest(|| {
-            let gg = g * g;
-            let merge = |o: &mut [Block], m: &[Block], d: &[Block], k: &[Block]| {
-                let (o, m, d, k) = (o.as_flattened_mut(), m.as_flattened(), d.as_flattened(), k.as_flattened());
-                for (((o, m), d), k) in o.iter_mut().zip(m).zip(d).zip(k) {
-                    for c in 0..BLOCK {
-                        o[c] = m[c] + g * d[c] + gg * k[c];
-                    }
-                }
-            };
-            merge(&mut self.lower, &m.lower, &d.lower, &k.lower);
-            merge(&mut self.diagonal, &m.diagonal, &d.diagonal, &k.diagonal);
-            merge(&mut self.upper, &m.upper, &d.upper, &k.upper);
-        });
+        for (o, [m, d, k]) in [
+            (&mut self.lower, [&m.lower, &d.lower, &k.lower]),
+            (&mut self.diagonal, [&m.diagonal, &d.diagonal, &k.diagonal]),
+            (&mut self.upper, [&m.upper, &d.upper, &k.upper]),
+        ] {
+            widest(Combination { o, m, d, k, g });
+        }
     }
 
     /// y += s A x.
@@ -106,17 +99,51 @@ impl BlockTridiagonal {
     /// # Errors
     /// [`SingularBlock`] names the block row; the content is then useless.
     pub fn factor(&mut self) -> Result<(), SingularBlock> {
-        widest(|| self.factor_with())
+        widest(Elimination(self))
     }
 
+    /// Solves A x = b in place; `self` holds the factors.
+    pub fn solve(&self, b: &mut [f64]) {
+        widest(Substitution { factors: self, b });
+    }
+}
+
+struct Combination<'a> {
+    o: &'a mut [Block],
+    m: &'a [Block],
+    d: &'a [Block],
+    k: &'a [Block],
+    g: f64,
+}
+
+impl Kernel for Combination<'_> {
+    type Output = ();
+
     #[inline(always)]
-    fn factor_with(&mut self) -> Result<(), SingularBlock> {
+    fn run(self) {
+        let (g, gg) = (self.g, self.g * self.g);
+        let (m, d, k) = (self.m.as_flattened().as_flattened(), self.d.as_flattened().as_flattened(), self.k.as_flattened().as_flattened());
+        let o = self.o.as_flattened_mut().as_flattened_mut();
+        for (((o, m), d), k) in o.iter_mut().zip(m).zip(d).zip(k) {
+            *o = m + g * d + gg * k;
+        }
+    }
+}
+
+struct Elimination<'a>(&'a mut BlockTridiagonal);
+
+impl Kernel for Elimination<'_> {
+    type Output = Result<(), SingularBlock>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let BlockTridiagonal { lower, diagonal, upper } = self.0;
         // D⁻¹ (L | U).
         let mut both = [[0.0; 2 * BLOCK]; BLOCK];
-        for i in 0..self.len() {
-            let d = &mut self.diagonal[i];
+        for i in 0..diagonal.len() {
+            let d = &mut diagonal[i];
             if i > 0 {
-                let l = &self.lower[i];
+                let l = &lower[i];
                 for r in 0..BLOCK {
                     let mut row = d[r];
                     for k in 0..BLOCK {
@@ -130,36 +157,41 @@ impl BlockTridiagonal {
             }
             lu(d).map_err(|()| SingularBlock { row: i })?;
             for r in 0..BLOCK {
-                both[r][..BLOCK].copy_from_slice(&self.lower[i][r]);
-                both[r][BLOCK..].copy_from_slice(&self.upper[i][r]);
+                both[r][..BLOCK].copy_from_slice(&lower[i][r]);
+                both[r][BLOCK..].copy_from_slice(&upper[i][r]);
             }
             lu_solve(d, &mut both);
             for r in 0..BLOCK {
                 for c in 0..BLOCK {
-                    self.lower[i][c][r] = both[r][c];
-                    self.upper[i][c][r] = both[r][BLOCK + c];
+                    lower[i][c][r] = both[r][c];
+                    upper[i][c][r] = both[r][BLOCK + c];
                 }
             }
         }
         Ok(())
     }
+}
 
-    /// Solves A x = b in place; `self` holds the factors.
-    pub fn solve(&self, b: &mut [f64]) {
-        widest(|| self.solve_with(b));
-    }
+struct Substitution<'a> {
+    factors: &'a BlockTridiagonal,
+    b: &'a mut [f64],
+}
+
+impl Kernel for Substitution<'_> {
+    type Output = ();
 
     #[inline(always)]
-    fn solve_with(&self, b: &mut [f64]) {
+    fn run(self) {
+        let Self { factors, b } = self;
         let (b, _) = b.as_chunks_mut::<BLOCK>();
         for i in 0..b.len() {
-            lu_solve(&self.diagonal[i], b[i].as_chunks_mut::<1>().0);
+            lu_solve(&factors.diagonal[i], b[i].as_chunks_mut::<1>().0);
             if i > 0 {
-                b[i] = minus_product(&b[i], &self.lower[i], &b[i - 1]);
+                b[i] = minus_product(&b[i], &factors.lower[i], &b[i - 1]);
             }
         }
         for i in (1..b.len()).rev() {
-            b[i - 1] = minus_product(&b[i - 1], &self.upper[i - 1], &b[i]);
+            b[i - 1] = minus_product(&b[i - 1], &factors.upper[i - 1], &b[i]);
         }
     }
 }

@@ -33,23 +33,30 @@ pub fn set_lane<const W: usize, const N: usize>(x: &mut [Lanes<W>; N], l: usize,
     }
 }
 
-/// Calls a kernel compiled for the widest registers of this processor. What `f` calls must be inlined to profit. Rounding does not depend
-/// on the processor: products and sums are not fused.
-#[inline(always)]
-pub fn widest<R>(f: impl FnOnce() -> R) -> R {
+/// A computation worth compiling for the widest registers of the processor at hand. (A trait, because a closure cannot be made to be inlined.)
+pub trait Kernel {
+    /// Its result.
+    type Output;
+
+    /// Computes it; to be marked `#[inline(always)]`, like all that it calls in its loops.
+    fn run(self) -> Self::Output;
+}
+
+/// Runs a kernel compiled for this processor. Rounding does not depend on the processor: products and sums are not fused.
+pub fn widest<K: Kernel>(kernel: K) -> K::Output {
     #[cfg(target_arch = "x86_64")]
     {
         #[target_feature(enable = "avx2,fma")]
-        fn avx2<R>(f: impl FnOnce() -> R) -> R {
-            f()
+        fn avx2<K: Kernel>(kernel: K) -> K::Output {
+            kernel.run()
         }
         if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
             // SAFETY: the features that the function is compiled for were just detected.
             #[allow(unsafe_code)]
-            return unsafe { avx2(f) };
+            return unsafe { avx2(kernel) };
         }
     }
-    f()
+    kernel.run()
 }
 
 /// A 3-vector.

@@ -8,7 +8,7 @@ use crate::cable::section::{Section, Strains};
 use crate::cable::shape;
 use crate::hydro::line::{LineInWater, LinePoint, Stream};
 use crate::linalg::BlockTridiagonal;
-use crate::math::lanes::{Lanes, Vec3, dot, lane, scale, set_lane};
+use crate::math::lanes::{Kernel, Lanes, Vec3, dot, lane, scale, set_lane, widest};
 use crate::math::quadrature::GAUSS3;
 
 /// Elements side by side.
@@ -151,6 +151,25 @@ const STILL: Slopes = Slopes {
     mass: NONE,
 };
 
+struct Pass<'a, const TANGENT: bool> {
+    chain: &'a Chain,
+    env: &'a Environment,
+    u: &'a [f64],
+    w: &'a [f64],
+    a: Option<&'a [f64]>,
+    forces: &'a mut [[f64; 12]],
+    matrices: &'a mut Matrices,
+}
+
+impl<const TANGENT: bool> Kernel for Pass<'_, TANGENT> {
+    type Output = Tally;
+
+    #[inline(always)]
+    fn run(self) -> Tally {
+        self.chain.pass_with::<TANGENT>(self.env, self.u, self.w, self.a, self.forces, self.matrices)
+    }
+}
+
 impl Chain {
     /// How much of element `e` is under water.
     pub fn wetness(&self, water: &LineInWater, env: &Environment, u: &[f64], e: usize) -> (Wetness, Height) {
@@ -178,28 +197,7 @@ impl Chain {
         forces: &mut [[f64; 12]],
         matrices: &mut Matrices,
     ) -> Tally {
-        #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
-            // SAFETY: the features that the function is compiled for were just detected.
-            #[allow(unsafe_code)]
-            return unsafe { self.pass_avx2::<TANGENT>(env, u, w, a, forces, matrices) };
-        }
-        self.pass_with::<TANGENT>(env, u, w, a, forces, matrices)
-    }
-
-    /// The same code for processors with AVX2.
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2,fma")]
-    fn pass_avx2<const TANGENT: bool>(
-        &self,
-        env: &Environment,
-        u: &[f64],
-        w: &[f64],
-        a: Option<&[f64]>,
-        forces: &mut [[f64; 12]],
-        matrices: &mut Matrices,
-    ) -> Tally {
-        self.pass_with::<TANGENT>(env, u, w, a, forces, matrices)
+        widest(Pass::<TANGENT> { chain: self, env, u, w, a, forces, matrices })
     }
 
     #[inline(always)]
