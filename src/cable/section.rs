@@ -9,7 +9,7 @@
 //! `kelvin_voigt`, axial c_a ε̇ and bending c_b β̇ with β = √(κ² + κ0²) (objective: both are scalars of the shape, so a rigid motion gives
 //! no force; κ0 only keeps the direction defined where the cable is straight), or the thesis's `gradient_rate`, c ṙ_p.
 
-use crate::math::lanes::{Mat3, Real, Vec3, add_identity, add_outer, axpy, dot, mat_vec, scale, zero_mat};
+use crate::math::lanes::{Mat3, Vec3, add_identity, add_outer, axpy, dot, mat_vec, scale, zero_mat};
 use crate::scene::{Cable, Compression, Damping, Strain};
 
 /// Constants of a section, ready for the kernel.
@@ -71,50 +71,54 @@ impl Section {
 
 /// Shape and rate of shape at a point of the cable.
 #[derive(Clone, Copy, Debug)]
-pub struct Strains<T> {
+pub struct Strains {
     /// r_p.
-    pub p: Vec3<T>,
+    pub p: Vec3<f64>,
     /// r_pp, 1/m.
-    pub pp: Vec3<T>,
+    pub pp: Vec3<f64>,
     /// ṙ_p, 1/s.
-    pub vp: Vec3<T>,
+    pub vp: Vec3<f64>,
     /// ṙ_pp, 1/(m·s).
-    pub vpp: Vec3<T>,
+    pub vpp: Vec3<f64>,
 }
 
-/// Resisting forces per length and their derivatives. `k` are derivatives by (r_p, r_pp), `d` by their rates.
+/// Resisting forces per length and their derivatives. `k` are derivatives by (r_p, r_pp). Those by the rates are sums of dyads,
+/// c_a (g, 0) ⊗ (g, 0) + c_b (e2, e1) ⊗ (e2, e1), beside the gradient-rate damping's c I.
 #[derive(Clone, Copy, Debug)]
-pub struct Resistance<T> {
+pub struct Resistance {
     /// Conjugate to r_p, N.
-    pub n: Vec3<T>,
+    pub n: Vec3<f64>,
     /// Conjugate to r_pp, N·m.
-    pub m: Vec3<T>,
+    pub m: Vec3<f64>,
     /// ∂n/∂r_p.
-    pub k_pp: Mat3<T>,
+    pub k_pp: Mat3<f64>,
     /// ∂n/∂r_pp.
-    pub k_pq: Mat3<T>,
+    pub k_pq: Mat3<f64>,
     /// ∂m/∂r_p.
-    pub k_qp: Mat3<T>,
+    pub k_qp: Mat3<f64>,
     /// ∂m/∂r_pp.
-    pub k_qq: Mat3<T>,
-    /// ∂n/∂ṙ_p.
-    pub d_pp: Mat3<T>,
-    /// ∂n/∂ṙ_pp (and the transpose of ∂m/∂ṙ_p).
-    pub d_pq: Mat3<T>,
-    /// ∂m/∂ṙ_pp.
-    pub d_qq: Mat3<T>,
+    pub k_qq: Mat3<f64>,
+    /// c_a where it acts, N·s.
+    pub c_axial: f64,
+    /// g = ∂ε/∂r_p.
+    pub g: Vec3<f64>,
+    /// c_b/β², N·m⁴·s.
+    pub c_bending: f64,
+    /// β ∂β/∂r_p, 1/m².
+    pub e2: Vec3<f64>,
+    /// β ∂β/∂r_pp, 1/m.
+    pub e1: Vec3<f64>,
     /// Elastic energy per length, J/m.
-    pub energy: T,
+    pub energy: f64,
     /// Rate of the elastic energy per length, W/m.
-    pub power: T,
+    pub power: f64,
 }
 
-impl<T: Real> Resistance<T> {
+impl Resistance {
     #[inline(always)]
     fn zero() -> Self {
-        let (z, o) = ([T::splat(0.0); 3], zero_mat());
-        let s = T::splat(0.0);
-        Self { n: z, m: z, k_pp: o, k_pq: o, k_qp: o, k_qq: o, d_pp: o, d_pq: o, d_qq: o, energy: s, power: s }
+        let (z, o) = ([0.0; 3], zero_mat());
+        Self { n: z, m: z, k_pp: o, k_pq: o, k_qp: o, k_qq: o, c_axial: 0.0, g: z, c_bending: 0.0, e2: z, e1: z, energy: 0.0, power: 0.0 }
     }
 }
 
@@ -133,7 +137,7 @@ impl Section {
     }
 
     /// The section's axial force N (model.md, "Which tension"): EA ε + c_a ε̇, for the Green pair (EA ε + c_a ε̇)‖r_p‖ − EI κ²/‖r_p‖, N.
-    pub fn axial_force(&self, s: &Strains<f64>) -> f64 {
+    pub fn axial_force(&self, s: &Strains) -> f64 {
         let l = dot(&s.p, &s.p).sqrt();
         let eps = self.strain(&s.p);
         let rate = dot(&s.p, &s.vp) / if self.green { 1.0 } else { l };
@@ -144,36 +148,26 @@ impl Section {
 
     /// Resisting forces at a point; derivatives only with `TANGENT`.
     #[inline(always)]
-    pub fn resistance<T: Real, const TANGENT: bool>(&self, s: &Strains<T>) -> Resistance<T> {
+    pub fn resistance<const TANGENT: bool>(&self, s: &Strains) -> Resistance {
         let mut out = Resistance::zero();
-        self.axial::<T, TANGENT>(s, &mut out);
+        self.axial::<TANGENT>(s, &mut out);
         if self.bends() {
-            self.bending::<T, TANGENT>(s, &mut out);
+            self.bending::<TANGENT>(s, &mut out);
         }
-        if self.gradient_damping > 0.0 {
-            out.n = axpy(&out.n, T::splat(self.gradient_damping), &s.vp);
-            if TANGENT {
-                add_identity(&mut out.d_pp, T::splat(self.gradient_damping));
-            }
-        }
+        out.n = axpy(&out.n, self.gradient_damping, &s.vp);
         out
     }
 
     /// n = N g with g = ∂ε/∂r_p.
     #[inline(always)]
-    fn axial<T: Real, const TANGENT: bool>(&self, s: &Strains<T>, out: &mut Resistance<T>) {
-        let one = T::splat(1.0);
+    fn axial<const TANGENT: bool>(&self, s: &Strains, out: &mut Resistance) {
         let l2 = dot(&s.p, &s.p);
         // g = r_p/λ or r_p; ∂g/∂r_p = c (I − b g gᵀ).
-        let (eps, g, c, b) = if self.green {
-            ((l2 - one) * 0.5, s.p, one, T::splat(0.0))
-        } else {
-            let l = l2.sqrt();
-            let i = one / l;
-            (l - one, scale(i, &s.p), i, one)
-        };
-        let taut = if self.tension_only { eps.step() } else { one };
-        let damped = if self.damp_in_slack { one } else { taut };
+        let l = l2.sqrt();
+        let (eps, c, b) = if self.green { ((l2 - 1.0) * 0.5, 1.0, 0.0) } else { (l - 1.0, 1.0 / l, 1.0) };
+        let g = scale(c, &s.p);
+        let taut = if self.tension_only && eps <= 0.0 { 0.0 } else { 1.0 };
+        let damped = if self.damp_in_slack { 1.0 } else { taut };
         let rate = dot(&g, &s.vp);
         let (ea, ca) = (taut * self.ea, damped * self.axial_damping);
         let elastic = ea * eps;
@@ -182,35 +176,32 @@ impl Section {
         out.energy += elastic * eps * 0.5;
         out.power += elastic * rate;
         if TANGENT {
-            // K = g ⊗ (EA g + c_a ∂ε̇/∂r_p) + N ∂g/∂r_p,   ∂ε̇/∂r_p = ∂g/∂r_p ṙ_p.
-            let turn = axpy(&scale(c, &s.vp), -(c * b * rate), &g);
-            let row = axpy(&scale(ea, &g), ca, &turn);
-            add_outer(&mut out.k_pp, one, &g, &row);
-            add_identity(&mut out.k_pp, n * c);
-            add_outer(&mut out.k_pp, -(n * c * b), &g, &g);
-            add_outer(&mut out.d_pp, ca, &g, &g);
+            // K = g ⊗ (EA g + c_a ∂ε̇/∂r_p) + N ∂g/∂r_p,   ∂ε̇/∂r_p = ∂g/∂r_p ṙ_p = c (ṙ_p − b ε̇ g).
+            let nc = n * c;
+            let row = axpy(&scale(ea - (ca * rate + n) * c * b, &g), ca * c, &s.vp);
+            add_outer(&mut out.k_pp, 1.0, &g, &row);
+            add_identity(&mut out.k_pp, nc);
+            (out.c_axial, out.g) = (ca, g);
         }
     }
 
     /// With κ² = G λ^(−2m), G = ‖r_p × r_pp‖², and (e2, e1) = ½ ∂κ²/∂(r_p, r_pp): n = B e2, m = B e1, B = EI + c_b β̇/β.
     #[inline(always)]
-    fn bending<T: Real, const TANGENT: bool>(&self, s: &Strains<T>, out: &mut Resistance<T>) {
+    fn bending<const TANGENT: bool>(&self, s: &Strains, out: &mut Resistance) {
         let m = if self.green { 3.0 } else { 2.0 };
-        let one = T::splat(1.0);
         let (l, a, b) = (dot(&s.p, &s.p), dot(&s.pp, &s.pp), dot(&s.p, &s.pp));
-        let i = one / l;
-        let pw = if self.green { i * i * i } else { i * i };
-        let k2 = (l * a - b * b).at_least(0.0) * pw; // κ²
+        let i = 1.0 / l;
+        let pw = i * i * if self.green { i } else { 1.0 };
+        let k2 = (l * a - b * b).max(0.0) * pw; // κ²
         // d1 = l r_pp − b r_p, d2 = a r_p − b r_pp.
         let d1 = axpy(&scale(l, &s.pp), -b, &s.p);
         let d2 = axpy(&scale(a, &s.p), -b, &s.pp);
         let e1 = scale(pw, &d1);
         let e2 = axpy(&scale(pw, &d2), -(k2 * i * m), &s.p);
         let rate = dot(&e1, &s.vpp) + dot(&e2, &s.vp); // κκ̇ = ββ̇
-        let damped = self.bending_damping > 0.0;
-        let ib2 = if damped { one / (k2 + T::splat(self.straight_curvature * self.straight_curvature)) } else { T::splat(0.0) };
+        let ib2 = 1.0 / (k2 + self.straight_curvature * self.straight_curvature);
         let cb = ib2 * self.bending_damping; // c_b/β²
-        let stiffness = T::splat(self.ei) + cb * rate;
+        let stiffness = self.ei + cb * rate;
         out.n = axpy(&out.n, stiffness, &e2);
         out.m = scale(stiffness, &e1);
         out.energy += k2 * (0.5 * self.ei);
@@ -220,11 +211,11 @@ impl Section {
             let mut h11 = zero_mat();
             add_identity(&mut h11, pw * l);
             add_outer(&mut h11, -pw, &s.p, &s.p);
+            let f = pw * i * (2.0 * m);
             let mut h12 = zero_mat();
             add_identity(&mut h12, -(pw * b));
             add_outer(&mut h12, pw + pw, &s.pp, &s.p);
             add_outer(&mut h12, -pw, &s.p, &s.pp);
-            let f = pw * i * (2.0 * m);
             add_outer(&mut h12, -f, &d1, &s.p);
             let mut h22 = zero_mat();
             add_identity(&mut h22, pw * a - k2 * i * m);
@@ -232,30 +223,22 @@ impl Section {
             add_outer(&mut h22, -f, &d2, &s.p);
             add_outer(&mut h22, -f, &s.p, &d2);
             add_outer(&mut h22, k2 * i * i * (2.0 * m * (m + 1.0)), &s.p, &s.p);
+            // ∂B/∂x = c_b (H ẋ/β² − 2 rate e/β⁴),   ∂B/∂ẋ = c_b e/β².
+            let h12t_vpp: Vec3<f64> = std::array::from_fn(|c| h12[0][c] * s.vpp[0] + h12[1][c] * s.vpp[1] + h12[2][c] * s.vpp[2]);
+            let hv2 = axpy(&mat_vec(&h22, &s.vp), 1.0, &h12t_vpp);
+            let hv1 = axpy(&mat_vec(&h12, &s.vp), 1.0, &mat_vec(&h11, &s.vpp));
+            let back = -(rate * ib2 * 2.0);
+            let b2 = scale(cb, &axpy(&hv2, back, &e2));
+            let b1 = scale(cb, &axpy(&hv1, back, &e1));
             for r in 0..3 {
                 for c in 0..3 {
-                    out.k_pp[r][c] += stiffness * h22[r][c];
-                    out.k_pq[r][c] += stiffness * h12[c][r];
-                    out.k_qp[r][c] += stiffness * h12[r][c];
-                    out.k_qq[r][c] += stiffness * h11[r][c];
+                    out.k_pp[r][c] += stiffness * h22[r][c] + e2[r] * b2[c];
+                    out.k_pq[r][c] += stiffness * h12[c][r] + e2[r] * b1[c];
+                    out.k_qp[r][c] += stiffness * h12[r][c] + e1[r] * b2[c];
+                    out.k_qq[r][c] += stiffness * h11[r][c] + e1[r] * b1[c];
                 }
             }
-            if damped {
-                // ∂B/∂x = c_b (H ẋ/β² − 2 rate e/β⁴),   ∂B/∂ẋ = c_b e/β².
-                let h12t_vpp: Vec3<T> = std::array::from_fn(|c| h12[0][c] * s.vpp[0] + h12[1][c] * s.vpp[1] + h12[2][c] * s.vpp[2]);
-                let hv2 = axpy(&mat_vec(&h22, &s.vp), one, &h12t_vpp);
-                let hv1 = axpy(&mat_vec(&h12, &s.vp), one, &mat_vec(&h11, &s.vpp));
-                let back = -(rate * ib2 * 2.0);
-                let b2 = scale(cb, &axpy(&hv2, back, &e2));
-                let b1 = scale(cb, &axpy(&hv1, back, &e1));
-                add_outer(&mut out.k_pp, one, &e2, &b2);
-                add_outer(&mut out.k_pq, one, &e2, &b1);
-                add_outer(&mut out.k_qp, one, &e1, &b2);
-                add_outer(&mut out.k_qq, one, &e1, &b1);
-                add_outer(&mut out.d_pp, cb, &e2, &e2);
-                add_outer(&mut out.d_pq, cb, &e2, &e1);
-                add_outer(&mut out.d_qq, cb, &e1, &e1);
-            }
+            (out.c_bending, out.e2, out.e1) = (cb, e2, e1);
         }
     }
 }
@@ -284,17 +267,17 @@ mod tests {
         ]
     }
 
-    fn state() -> Strains<f64> {
+    fn state() -> Strains {
         Strains { p: [0.9, 0.35, -0.4], pp: [1.1, -2.0, 0.7], vp: [0.3, -0.8, 0.5], vpp: [-1.2, 0.4, 2.2] }
     }
 
     fn forces(s: &Section, x: &[f64; 12]) -> ([f64; 6], f64) {
         let g = |i: usize| [x[i], x[i + 1], x[i + 2]];
-        let r = s.resistance::<f64, false>(&Strains { p: g(0), pp: g(3), vp: g(6), vpp: g(9) });
+        let r = s.resistance::<false>(&Strains { p: g(0), pp: g(3), vp: g(6), vpp: g(9) });
         ([r.n[0], r.n[1], r.n[2], r.m[0], r.m[1], r.m[2]], r.energy)
     }
 
-    fn flat(s: &Strains<f64>) -> [f64; 12] {
+    fn flat(s: &Strains) -> [f64; 12] {
         let mut x = [0.0; 12];
         for (i, v) in [s.p, s.pp, s.vp, s.vpp].iter().enumerate() {
             x[3 * i..3 * i + 3].copy_from_slice(v);
@@ -306,7 +289,7 @@ mod tests {
     fn exact_tangent_matches_central_differences() {
         for s in sections() {
             let x = flat(&state());
-            let r = s.resistance::<f64, true>(&state());
+            let r = s.resistance::<true>(&state());
             let scale = forces(&s, &x).0.iter().fold(0.0f64, |a, f| a.max(f.abs()));
             for j in 0..12 {
                 let h = 1e-6;
@@ -321,10 +304,12 @@ mod tests {
                         (0, 1) => r.k_pq[a][b],
                         (1, 0) => r.k_qp[a][b],
                         (1, 1) => r.k_qq[a][b],
-                        (0, 2) => r.d_pp[a][b],
-                        (0, 3) => r.d_pq[a][b],
-                        (1, 2) => r.d_pq[b][a],
-                        _ => r.d_qq[a][b],
+                        (0, 2) => {
+                            r.c_axial * r.g[a] * r.g[b] + r.c_bending * r.e2[a] * r.e2[b] + if a == b { s.gradient_damping } else { 0.0 }
+                        }
+                        (0, 3) => r.c_bending * r.e2[a] * r.e1[b],
+                        (1, 2) => r.c_bending * r.e1[a] * r.e2[b],
+                        _ => r.c_bending * r.e1[a] * r.e1[b],
                     };
                     let d = (fu[i] - fd[i]) / (2.0 * h);
                     // Rounding eps/h times the force, and h² truncation.

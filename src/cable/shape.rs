@@ -5,30 +5,29 @@
 //! s1 = 1 − 3ξ² + 2ξ³,  s2 = L(ξ − 2ξ² + ξ³),  s3 = 3ξ² − 2ξ³,  s4 = L(ξ³ − ξ²)
 //! ```
 
-use crate::math::lanes::{Real, Vec3};
+use crate::math::lanes::Vec3;
 
 /// Values of the four shape functions, or of one of their derivatives with respect to p.
-pub type Shape<T> = [T; 4];
+pub type Shape = [f64; 4];
 
 /// s at ξ of an element of length `l` (m).
 #[inline(always)]
-pub fn value<T: Real>(x: f64, l: T) -> Shape<T> {
+pub fn value(x: f64, l: f64) -> Shape {
     let (x2, x3) = (x * x, x * x * x);
-    let one = T::splat(1.0);
-    [one * (1.0 - 3.0 * x2 + 2.0 * x3), l * (x - 2.0 * x2 + x3), one * (3.0 * x2 - 2.0 * x3), l * (x3 - x2)]
+    [1.0 - 3.0 * x2 + 2.0 * x3, l * (x - 2.0 * x2 + x3), 3.0 * x2 - 2.0 * x3, l * (x3 - x2)]
 }
 
 /// ds/dp at ξ; `i` = 1/L.
 #[inline(always)]
-pub fn slope<T: Real>(x: f64, i: T) -> Shape<T> {
+pub fn slope(x: f64, i: f64) -> Shape {
     let x2 = x * x;
     let d = 6.0 * (x2 - x);
-    [i * d, T::splat(1.0 - 4.0 * x + 3.0 * x2), i * (-d), T::splat(3.0 * x2 - 2.0 * x)]
+    [i * d, 1.0 - 4.0 * x + 3.0 * x2, i * (-d), 3.0 * x2 - 2.0 * x]
 }
 
 /// d²s/dp² at ξ; `i` = 1/L.
 #[inline(always)]
-pub fn second<T: Real>(x: f64, i: T) -> Shape<T> {
+pub fn second(x: f64, i: f64) -> Shape {
     let i2 = i * i;
     let d = 12.0 * x - 6.0;
     [i2 * d, i * (6.0 * x - 4.0), i2 * (-d), i * (6.0 * x - 2.0)]
@@ -36,20 +35,20 @@ pub fn second<T: Real>(x: f64, i: T) -> Shape<T> {
 
 /// Σ s_i q_i.
 #[inline(always)]
-pub fn interpolate<T: Real>(s: &Shape<T>, q: &[Vec3<T>; 4]) -> Vec3<T> {
+pub fn interpolate(s: &Shape, q: &[Vec3<f64>; 4]) -> Vec3<f64> {
     std::array::from_fn(|c| s[0] * q[0][c] + s[1] * q[1][c] + s[2] * q[2][c] + s[3] * q[3][c])
 }
 
 /// ∫ s dp of an element of length `l`.
 #[inline(always)]
-pub fn integral<T: Real>(l: T) -> Shape<T> {
+pub fn integral(l: f64) -> Shape {
     let l2 = l * l;
     [l * 0.5, l2 * (1.0 / 12.0), l * 0.5, l2 * (-1.0 / 12.0)]
 }
 
 /// ∫ sᵢ sⱼ dp of an element of length `l`: the mass matrix per mass per length, one number per pair (times the 3×3 identity).
 #[inline(always)]
-pub fn mass<T: Real>(l: T) -> [[T; 4]; 4] {
+pub fn mass(l: f64) -> [[f64; 4]; 4] {
     let (l2, l3) = (l * l, l * l * l);
     let (a, b, c, d, e, f) =
         (l * (13.0 / 35.0), l2 * (11.0 / 210.0), l * (9.0 / 70.0), l2 * (13.0 / 420.0), l3 * (1.0 / 105.0), l3 * (-1.0 / 140.0));

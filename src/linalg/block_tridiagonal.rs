@@ -1,5 +1,7 @@
 //! Storage, products and LU solution of a block-tridiagonal system (Golub & Van Loan, Matrix Computations, 4.5.1).
 
+use crate::math::lanes::{Kernel, widest};
+
 /// Unknowns per block.
 pub const BLOCK: usize = 6;
 /// A block, row major.
@@ -62,19 +64,13 @@ impl BlockTridiagonal {
 
     /// self = m + g d + g² k.
     pub fn combine(&mut self, m: &Self, d: &Self, k: &Self, g: f64) {
-        let gg = g * g;
-        let merge = |o: &mut [Block], m: &[Block], d: &[Block], k: &[Block]| {
-            for (((o, m), d), k) in o.iter_mut().zip(m).zip(d).zip(k) {
-                for r in 0..BLOCK {
-                    for c in 0..BLOCK {
-                        o[r][c] = m[r][c] + g * d[r][c] + gg * k[r][c];
-                    }
-                }
-            }
-        };
-        merge(&mut self.lower, &m.lower, &d.lower, &k.lower);
-        merge(&mut self.diagonal, &m.diagonal, &d.diagonal, &k.diagonal);
-        merge(&mut self.upper, &m.upper, &d.upper, &k.upper);
+        for (o, [m, d, k]) in [
+            (&mut self.lower, [&m.lower, &d.lower, &k.lower]),
+            (&mut self.diagonal, [&m.diagonal, &d.diagonal, &k.diagonal]),
+            (&mut self.upper, [&m.upper, &d.upper, &k.upper]),
+        ] {
+            widest(Combination { o, m, d, k, g });
+        }
     }
 
     /// y += s A x.
@@ -95,57 +91,107 @@ impl BlockTridiagonal {
         }
     }
 
-    /// Replaces the matrix by its block LU factors: `lower` by L, `diagonal` by the LU factors of the pivots, `upper` unchanged.
+    /// Replaces the matrix A by factors of A = (D + L) (1 + D⁻¹U), block by block: `diagonal` by the LU factors of the pivots D,
+    /// `lower` and `upper` by the transposes of D⁻¹L and D⁻¹U. So a solution's chain from node to node holds one product per node and no
+    /// triangular solution.
     /// No pivoting: mass keeps the pivots away from zero at the step sizes in use, and a vanishing one is reported.
     ///
     /// # Errors
     /// [`SingularBlock`] names the block row; the content is then useless.
     pub fn factor(&mut self) -> Result<(), SingularBlock> {
-        let n = self.len();
-        for i in 0..n {
-            if i > 0 {
-                // L_i = lower_i D⁻¹_{i−1}, then D_i −= L_i upper_{i−1}.
-                let (l, d) = (&mut self.lower[i], &self.diagonal[i - 1]);
-                right_solve(d, l);
-                let u = &self.upper[i - 1];
-                let l = &self.lower[i];
-                let d = &mut self.diagonal[i];
-                for r in 0..BLOCK {
-                    for k in 0..BLOCK {
-                        let f = l[r][k];
-                        for c in 0..BLOCK {
-                            d[r][c] -= f * u[k][c];
-                        }
-                    }
-                }
-            }
-            lu(&mut self.diagonal[i]).map_err(|()| SingularBlock { row: i })?;
-        }
-        Ok(())
+        widest(Elimination(self))
     }
 
     /// Solves A x = b in place; `self` holds the factors.
     pub fn solve(&self, b: &mut [f64]) {
-        let n = self.len();
-        for i in 1..n {
-            let (done, rest) = b.split_at_mut(BLOCK * i);
-            let mut acc = [0.0; BLOCK];
-            block_vec(&self.lower[i], &done[BLOCK * (i - 1)..], &mut acc);
-            for (y, a) in rest[..BLOCK].iter_mut().zip(acc) {
-                *y -= a;
-            }
+        widest(Substitution { factors: self, b });
+    }
+}
+
+struct Combination<'a> {
+    o: &'a mut [Block],
+    m: &'a [Block],
+    d: &'a [Block],
+    k: &'a [Block],
+    g: f64,
+}
+
+impl Kernel for Combination<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let (g, gg) = (self.g, self.g * self.g);
+        let (m, d, k) = (self.m.as_flattened().as_flattened(), self.d.as_flattened().as_flattened(), self.k.as_flattened().as_flattened());
+        let o = self.o.as_flattened_mut().as_flattened_mut();
+        for (((o, m), d), k) in o.iter_mut().zip(m).zip(d).zip(k) {
+            *o = m + g * d + gg * k;
         }
-        for i in (0..n).rev() {
-            let (head, tail) = b.split_at_mut(BLOCK * (i + 1));
-            let x = &mut head[BLOCK * i..];
-            if i + 1 < n {
-                let mut acc = [0.0; BLOCK];
-                block_vec(&self.upper[i], &tail[..BLOCK], &mut acc);
-                for (y, a) in x.iter_mut().zip(acc) {
-                    *y -= a;
+    }
+}
+
+struct Elimination<'a>(&'a mut BlockTridiagonal);
+
+impl Kernel for Elimination<'_> {
+    type Output = Result<(), SingularBlock>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let BlockTridiagonal { lower, diagonal, upper } = self.0;
+        // D⁻¹ (L | U).
+        let mut both = [[0.0; 2 * BLOCK]; BLOCK];
+        for i in 0..diagonal.len() {
+            let d = &mut diagonal[i];
+            if i > 0 {
+                let l = &lower[i];
+                for r in 0..BLOCK {
+                    let mut row = d[r];
+                    for k in 0..BLOCK {
+                        let f = l[r][k];
+                        for c in 0..BLOCK {
+                            row[c] -= f * both[k][BLOCK + c];
+                        }
+                    }
+                    d[r] = row;
                 }
             }
-            lu_solve(&self.diagonal[i], x);
+            lu(d).map_err(|()| SingularBlock { row: i })?;
+            for r in 0..BLOCK {
+                both[r][..BLOCK].copy_from_slice(&lower[i][r]);
+                both[r][BLOCK..].copy_from_slice(&upper[i][r]);
+            }
+            lu_solve(d, &mut both);
+            for r in 0..BLOCK {
+                for c in 0..BLOCK {
+                    lower[i][c][r] = both[r][c];
+                    upper[i][c][r] = both[r][BLOCK + c];
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+struct Substitution<'a> {
+    factors: &'a BlockTridiagonal,
+    b: &'a mut [f64],
+}
+
+impl Kernel for Substitution<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { factors, b } = self;
+        let (b, _) = b.as_chunks_mut::<BLOCK>();
+        for i in 0..b.len() {
+            lu_solve(&factors.diagonal[i], b[i].as_chunks_mut::<1>().0);
+            if i > 0 {
+                b[i] = minus_product(&b[i], &factors.lower[i], &b[i - 1]);
+            }
+        }
+        for i in (1..b.len()).rev() {
+            b[i - 1] = minus_product(&b[i - 1], &factors.upper[i - 1], &b[i]);
         }
     }
 }
@@ -159,6 +205,25 @@ fn block_vec(a: &Block, x: &[f64], y: &mut [f64; BLOCK]) {
             s += a[r][c] * x[c];
         }
         y[r] += s;
+    }
+}
+
+/// y − Aᵀ x.
+#[inline(always)]
+fn minus_product(y: &[f64; BLOCK], a: &Block, x: &[f64; BLOCK]) -> [f64; BLOCK] {
+    let mut out = *y;
+    for r in 0..BLOCK {
+        let (p, q, s) = (a[0][r] * x[0] + a[1][r] * x[1], a[2][r] * x[2] + a[3][r] * x[3], a[4][r] * x[4] + a[5][r] * x[5]);
+        out[r] -= (p + q) + s;
+    }
+    out
+}
+
+/// y −= f x.
+#[inline(always)]
+fn subtract<const N: usize>(y: &mut [f64; N], f: f64, x: &[f64; N]) {
+    for c in 0..N {
+        y[c] -= f * x[c];
     }
 }
 
@@ -183,41 +248,23 @@ fn lu(a: &mut Block) -> Result<(), ()> {
     Ok(())
 }
 
+/// x = (LU)⁻¹ x of `N` right-hand sides.
 #[inline(always)]
-fn lu_solve(a: &Block, x: &mut [f64]) {
+fn lu_solve<const N: usize>(a: &Block, x: &mut [[f64; N]]) {
     for r in 1..BLOCK {
-        let mut s = x[r];
+        let mut y = x[r];
         for c in 0..r {
-            s -= a[r][c] * x[c];
+            subtract(&mut y, a[r][c], &x[c]);
         }
-        x[r] = s;
+        x[r] = y;
     }
     for r in (0..BLOCK).rev() {
-        let mut s = x[r];
+        let mut y = x[r];
         for c in r + 1..BLOCK {
-            s -= a[r][c] * x[c];
+            subtract(&mut y, a[r][c], &x[c]);
         }
-        x[r] = s * a[r][r];
-    }
-}
-
-/// l = l (LU)⁻¹, row by row: y U = l, then x L = y.
-#[inline(always)]
-fn right_solve(a: &Block, l: &mut Block) {
-    for row in l.iter_mut() {
-        for c in 0..BLOCK {
-            let mut s = row[c];
-            for k in 0..c {
-                s -= row[k] * a[k][c];
-            }
-            row[c] = s * a[c][c];
-        }
-        for c in (0..BLOCK).rev() {
-            let mut s = row[c];
-            for k in c + 1..BLOCK {
-                s -= row[k] * a[k][c];
-            }
-            row[c] = s;
+        for c in 0..N {
+            x[r][c] = y[c] * a[r][r];
         }
     }
 }

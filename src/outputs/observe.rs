@@ -96,7 +96,7 @@ fn cable(system: &System, env: &Environment, u: &[f64], w: &[f64], out: &mut Out
     }
 }
 
-fn strains(u: &[f64], w: &[f64], e: usize, l: f64, x: f64) -> Strains<f64> {
+fn strains(u: &[f64], w: &[f64], e: usize, l: f64, x: f64) -> Strains {
     let (sp, spp) = (shape::slope(x, 1.0 / l), shape::second(x, 1.0 / l));
     let (qu, qw) = (gather(u, e), gather(w, e));
     Strains {

@@ -288,7 +288,7 @@ impl System {
                         a: std::array::from_fn(|c| ra[c] + env.base[c].0[2]),
                         w: point.w,
                     };
-                    let load = water.load::<f64, TANGENT>(&at, &env.flow);
+                    let load = water.load::<TANGENT>(&at, &env.flow);
                     let (share, dshare) = line_share(at.z, water.waterline, water.diameter);
                     let s = wl * share;
                     point.push(&load.f.map(|x| s * x), forces);

@@ -11,9 +11,9 @@ pub struct ElementPoint {
     /// The element.
     pub e: usize,
     /// Shape functions and their slopes.
-    pub s: Shape<f64>,
+    pub s: Shape,
     /// ds/dp.
-    pub sp: Shape<f64>,
+    pub sp: Shape,
     /// u.
     pub u: Vec3<f64>,
     /// w.

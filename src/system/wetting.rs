@@ -3,11 +3,18 @@
 /// Most pieces that a cubic can be cut into by two levels.
 pub const PIECES: usize = 7;
 
+/// Least and greatest Bézier control value, bounds of the cubic with end values z0, z1 and end slopes a, b by ξ.
+#[inline(always)]
+pub fn bounds(z0: f64, a: f64, z1: f64, b: f64) -> (f64, f64) {
+    let (near, far) = (z0 + a / 3.0, z1 - b / 3.0);
+    (z0.min(z1).min(near.min(far)), z0.max(z1).max(near.max(far)))
+}
+
 /// The element's height as a cubic in ξ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Height {
     c: [f64; 4],
-    /// Least and greatest Bézier control value: bounds of the cubic.
+    /// Bounds of the cubic.
     pub bounds: (f64, f64),
 }
 
@@ -15,9 +22,7 @@ impl Height {
     /// From end heights and end slopes dz/dp of an element of length `l`.
     pub fn new(z0: f64, s0: f64, z1: f64, s1: f64, l: f64) -> Self {
         let (a, b) = (s0 * l, s1 * l);
-        let control = [z0, z0 + a / 3.0, z1 - b / 3.0, z1];
-        let bounds = control.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), z| (lo.min(*z), hi.max(*z)));
-        Self { c: [z0, a, 3.0 * (z1 - z0) - 2.0 * a - b, 2.0 * (z0 - z1) + a + b], bounds }
+        Self { c: [z0, a, 3.0 * (z1 - z0) - 2.0 * a - b, 2.0 * (z0 - z1) + a + b], bounds: bounds(z0, a, z1, b) }
     }
 
     fn at(&self, x: f64) -> f64 {
@@ -46,6 +51,9 @@ impl Height {
 
     /// Interior ξ where the height equals `level`, at most three.
     fn crossings(&self, level: f64, mut found: impl FnMut(f64)) {
+        if level <= self.bounds.0 || level >= self.bounds.1 {
+            return;
+        }
         // Monotone pieces between the extrema.
         let mut ends = [0.0; 4];
         let mut n = 1;
@@ -65,27 +73,27 @@ impl Height {
         ends[n] = 1.0;
         for i in 0..n {
             let (mut lo, mut hi) = (ends[i], ends[i + 1]);
-            let (mut flo, fhi) = (self.at(lo) - level, self.at(hi) - level);
+            let (flo, fhi) = (self.at(lo) - level, self.at(hi) - level);
             if flo * fhi >= 0.0 {
                 continue;
             }
-            // Newton inside a shrinking bracket.
-            let mut x = 0.5 * (lo + hi);
+            // Newton inside a shrinking bracket, from the chord's root: elements are nearly straight.
+            let mut x = lo + (hi - lo) * (flo / (flo - fhi));
             for _ in 0..80 {
                 let f = self.at(x) - level;
                 if f * flo > 0.0 {
-                    (lo, flo) = (x, f);
+                    lo = x
                 } else {
-                    hi = x;
+                    hi = x
                 }
                 let d = self.c[1] + x * (2.0 * self.c[2] + x * 3.0 * self.c[3]);
                 let newton = x - f / d;
-                let next = if newton > lo && newton < hi { newton } else { 0.5 * (lo + hi) };
-                let done = (next - x).abs() < 1e-16;
-                x = next;
-                if done {
+                // The error after a step goes with the step's square.
+                if (newton - x).abs() < 1e-11 {
+                    x = newton.clamp(lo, hi);
                     break;
                 }
+                x = if newton > lo && newton < hi { newton } else { 0.5 * (lo + hi) };
             }
             found(x);
         }
@@ -112,6 +120,26 @@ mod tests {
         h.wet_pieces(50.0, 60.0, |a, b| all += b - a);
         assert_eq!(all, 1.0);
         h.wet_pieces(-60.0, -50.0, |_, _| panic!("dry"));
+    }
+
+    #[test]
+    fn exact_cuts_lie_on_the_levels() {
+        let mut seed = 1u64;
+        let mut random = || {
+            seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        };
+        for _ in 0..20_000 {
+            let h = Height::new(random(), random() * 4.0, random(), random() * 4.0, 1.0);
+            let (low, high) = (random() * 0.4, random() * 0.1 + 0.25);
+            let mut cuts = vec![];
+            for level in [low, high] {
+                h.crossings(level, |x| cuts.push((x, level)));
+            }
+            for (x, level) in cuts {
+                assert!((h.at(x) - level).abs() < 2e-15, "{h:?} at {x} is {} from {level}", h.at(x) - level);
+            }
+        }
     }
 
     #[test]
