@@ -66,13 +66,19 @@ pub struct Touch<'a> {
 }
 
 impl Touch<'_> {
-    /// Gap at ξ and its derivative by ξ.
-    #[inline]
+    /// A measure of the gap at ξ, and its derivative by ξ: the gap itself, of a cylinder ρ² − R², which has the same sign and roots and needs
+    /// no square root.
+    #[inline(always)]
     pub fn gap(&self, x: f64) -> (f64, f64) {
         let (s, d) = (self.curve.at(x), self.curve.slope(x));
-        let rho = (s[1] * s[1] + s[2] * s[2]).sqrt();
         let Face { axial, radial } = self.face;
-        (axial * s[0] + radial * (rho - self.surface.radius), axial * d[0] + radial * (s[1] * d[1] + s[2] * d[2]) / rho)
+        let (square, rate) = (s[1] * s[1] + s[2] * s[2], s[1] * d[1] + s[2] * d[2]);
+        let radius = self.surface.radius;
+        if axial == 0.0 {
+            return (square - radius * radius, rate + rate);
+        }
+        let rho = square.sqrt();
+        (axial * s[0] + radial * (rho - radius), axial * d[0] + radial * rate / rho)
     }
 
     /// Calls `found` with the arcs of [`start`, 1] in contact, in order.

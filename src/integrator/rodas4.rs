@@ -12,6 +12,7 @@
 
 use super::{Problem, Trial};
 use crate::linalg::BlockTridiagonal;
+use crate::math::lanes::{Kernel, widest};
 use crate::system::Matrices;
 
 const STAGES: usize = 6;
@@ -20,14 +21,13 @@ const GAMMA: f64 = 0.25;
 const ALPHA: [f64; STAGES] = [0.0, 0.386, 0.21, 0.63, 1.0, 1.0];
 /// Factors of ∂F/∂t.
 const GAMMA_I: [f64; STAGES] = [0.25, -0.1043, 0.1035, -0.036_200_000_000_000_23, 0.0, 0.0];
-/// Stage values: y + Σ a_ij U_j.
-const A: [&[f64]; STAGES] = [
+/// Stage values: y + Σ a_ij U_j; the last stage has the same row and a_65 = 1.
+const A: [&[f64]; STAGES - 1] = [
     &[],
     &[1.544],
     &[0.946_678_528_081_582_6, 0.255_701_169_898_328_4],
     &[3.314_825_187_068_521, 2.896_124_015_972_201, 0.998_641_913_997_781_7],
     &[1.221_224_509_226_641, 6.019_134_481_288_629, 12.537_083_329_320_87, -0.687_886_036_105_895],
-    &[1.221_224_509_226_641, 6.019_134_481_288_629, 12.537_083_329_320_87, -0.687_886_036_105_895, 1.0],
 ];
 /// Σ c_ij U_j / h.
 const C: [&[f64]; STAGES] = [
@@ -98,12 +98,8 @@ impl Rodas4 {
                 add(&mut self.rhs, GAMMA_I[i] * h, &self.rate);
             }
             // s_i, then −g K s_i.
-            self.shift.copy_from_slice(&self.stage[1]);
-            self.scratch.fill(0.0);
-            for (j, c) in C[i].iter().enumerate() {
-                add(&mut self.shift, c / h, &self.p[j]);
-                add(&mut self.scratch, c / h, &self.w[j]);
-            }
+            blend(&mut self.shift, Some(&self.stage[1]), 1.0 / h, C[i], &self.p);
+            blend(&mut self.scratch, None, 1.0 / h, C[i], &self.w);
             m.stiffness.multiply_add(-g, &self.shift, &mut self.rhs);
             // A_i without W_i/g, before the mass product uses the buffer for M (Σ c_ij W_j / h + a_i).
             if varies {
@@ -143,17 +139,19 @@ impl Rodas4 {
 
     fn stage_values(&mut self, i: usize, u0: &[f64], w0: &[f64], a0: &[f64], varies: bool) {
         let [u, w, a] = &mut self.stage;
-        u.copy_from_slice(u0);
-        w.copy_from_slice(w0);
-        for (j, c) in A[i].iter().enumerate() {
-            add(u, *c, &self.p[j]);
-            add(w, *c, &self.w[j]);
-        }
-        if varies {
-            a.copy_from_slice(a0);
-            for (j, c) in A[i].iter().enumerate() {
-                add(a, *c, &self.a[j]);
+        if i + 1 == STAGES {
+            // The last row of a_ij is the one before it and a one.
+            add(u, 1.0, &self.p[i - 1]);
+            add(w, 1.0, &self.w[i - 1]);
+            if varies {
+                add(a, 1.0, &self.a[i - 1]);
             }
+            return;
+        }
+        blend(u, Some(u0), 1.0, A[i], &self.p);
+        blend(w, Some(w0), 1.0, A[i], &self.w);
+        if varies {
+            blend(a, Some(a0), 1.0, A[i], &self.a);
         }
     }
 
@@ -165,6 +163,47 @@ impl Rodas4 {
     /// The velocity error estimate of the last attempt.
     pub fn error(&self) -> &[f64] {
         &self.w[STAGES - 1]
+    }
+}
+
+/// out = base + s Σ c_j v_j.
+fn blend(out: &mut [f64], base: Option<&[f64]>, s: f64, c: &[f64], v: &[Vec<f64>]) {
+    widest(Blend { out, base, s, c, v });
+}
+
+struct Blend<'a> {
+    out: &'a mut [f64],
+    base: Option<&'a [f64]>,
+    s: f64,
+    c: &'a [f64],
+    v: &'a [Vec<f64>],
+}
+
+impl Kernel for Blend<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { out, base, s, c, v } = self;
+        match base {
+            Some(base) => out.copy_from_slice(base),
+            None => out.fill(0.0),
+        }
+        let n = out.len();
+        let mut j = 0;
+        while j + 1 < c.len() {
+            let (c0, c1, v0, v1) = (s * c[j], s * c[j + 1], &v[j][..n], &v[j + 1][..n]);
+            for k in 0..n {
+                out[k] += c0 * v0[k] + c1 * v1[k];
+            }
+            j += 2;
+        }
+        if j < c.len() {
+            let (c0, v0) = (s * c[j], &v[j][..n]);
+            for k in 0..n {
+                out[k] += c0 * v0[k];
+            }
+        }
     }
 }
 

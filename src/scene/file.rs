@@ -92,7 +92,9 @@ impl SceneFile {
             }
             _ => vec![],
         };
-        problems.into_result(&self.source, root.scene(points))
+        let scene = root.scene(points);
+        super::wheels::check(&scene, &mut problems);
+        problems.into_result(&self.source, scene)
     }
 }
 

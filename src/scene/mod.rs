@@ -10,6 +10,7 @@ mod problem;
 mod rules;
 mod schema;
 mod start_shape;
+mod wheels;
 
 pub use leaves::Leaf;
 pub use model::*;
