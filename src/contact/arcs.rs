@@ -81,6 +81,28 @@ impl Touch<'_> {
         (axial * s[0] + radial * (rho - radius), axial * d[0] + radial * rate / rho)
     }
 
+    /// A root of the gap in a bracket of (ξ, gap): Newton's method, halving where it leaves the bracket.
+    fn root(&self, (mut a, mut fa): (f64, f64), (mut b, fb): (f64, f64)) -> f64 {
+        let mut x = (a * fb - b * fa) / (fb - fa);
+        for _ in 0..60 {
+            let (f, slope) = self.gap(x);
+            if (f < 0.0) == (fa < 0.0) {
+                (a, fa) = (x, f);
+            } else {
+                b = x;
+            }
+            let newton = x - f / slope;
+            let next = if newton > a.min(b) && newton < a.max(b) { newton } else { 0.5 * (a + b) };
+            let done = (next - x).abs() < 1e-9;
+            x = next;
+            if done {
+                // Quadratic convergence: the last step has squared what this one left.
+                break;
+            }
+        }
+        x
+    }
+
     /// Calls `found` with the arcs of [`start`, 1] in contact, in order.
     #[inline]
     pub fn arcs(&self, start: f64, mut found: impl FnMut(Arc)) {
@@ -97,14 +119,14 @@ impl Touch<'_> {
             let x1 = k as f64 / INTERVALS as f64;
             let (g1, d1) = self.gap(x1);
             if (g0 < 0.0) != (g1 < 0.0) {
-                cross(root(|x| self.gap(x).0, (x0, g0), (x1, g1)));
+                cross(self.root((x0, g0), (x1, g1)));
             } else if (d0 < 0.0) != (d1 < 0.0) && (d0 < 0.0) == (g0 >= 0.0) {
-                // An extremum towards the other side; if it lies beyond the gap's own scale nothing can have crossed.
-                let x = root(|x| self.gap(x).1, (x0, d0), (x1, d1));
+                // An extremum towards the other side.
+                let x = turning_point(|x| self.gap(x).1, (x0, d0), (x1, d1));
                 let g = self.gap(x).0;
                 if (g < 0.0) != (g0 < 0.0) {
-                    cross(root(|x| self.gap(x).0, (x0, g0), (x, g)));
-                    cross(root(|x| self.gap(x).0, (x, g), (x1, g1)));
+                    cross(self.root((x0, g0), (x, g)));
+                    cross(self.root((x, g), (x1, g1)));
                 }
             }
             (x0, g0, d0) = (x1, g1, d1);
@@ -115,8 +137,8 @@ impl Touch<'_> {
     }
 }
 
-/// A root of `f` in a bracket of (x, f(x)), by the Illinois form of the false position.
-fn root(f: impl Fn(f64) -> f64, (mut a, mut fa): (f64, f64), (mut b, mut fb): (f64, f64)) -> f64 {
+/// A root of the slope `f` in a bracket of (x, f(x)), by the Illinois form of the false position.
+fn turning_point(f: impl Fn(f64) -> f64, (mut a, mut fa): (f64, f64), (mut b, mut fb): (f64, f64)) -> f64 {
     for _ in 0..60 {
         let x = (a * fb - b * fa) / (fb - fa);
         if !(x > a.min(b) && x < a.max(b)) || (b - a).abs() < 1e-15 {

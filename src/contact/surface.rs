@@ -140,6 +140,16 @@ impl Surface {
         faces[..n].iter().map(|f| self.gap(*f, s)).fold(f64::INFINITY, f64::min)
     }
 
+    /// Whether a face is nearer than `reach` (m) to a point, and the groove's extent too.
+    #[inline]
+    pub fn within(&self, s: &Vec3<f64>, reach: f64) -> bool {
+        let (limit, square) = (self.radius + reach, s[1] * s[1] + s[2] * s[2]);
+        match self.groove {
+            None => square < limit * limit,
+            Some(_) => self.least_gap(s) < reach && self.beyond(s) < reach,
+        }
+    }
+
     /// How far (m) a point is beyond the reach of the groove's flanks; negative within.
     #[inline]
     pub fn beyond(&self, s: &Vec3<f64>) -> f64 {
@@ -153,7 +163,7 @@ impl Surface {
     }
 
     /// Load on a point at `s` that moves with `v` relative to the ship while the surface turns at `spin` (rad/s); `None` without contact.
-    #[inline]
+    #[inline(always)]
     pub fn load<const TANGENT: bool>(&self, face: Face, s: &Vec3<f64>, v: &Vec3<f64>, spin: f64) -> Option<PointLoad> {
         let rho = (s[1] * s[1] + s[2] * s[2]).sqrt();
         let h = rho - self.radius;

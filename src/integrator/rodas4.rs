@@ -101,14 +101,9 @@ impl Rodas4 {
             blend(&mut self.shift, Some(&self.stage[1]), 1.0 / h, C[i], &self.p);
             blend(&mut self.scratch, None, 1.0 / h, C[i], &self.w);
             m.stiffness.multiply_add(-g, &self.shift, &mut self.rhs);
-            // A_i without W_i/g, before the mass product uses the buffer for M (Σ c_ij W_j / h + a_i).
+            // M (Σ c_ij W_j / h + a_i).
             if varies {
-                for k in 0..self.rhs.len() {
-                    self.a[i][k] = -self.stage[2][k] - self.scratch[k];
-                    if i > 0 {
-                        self.scratch[k] += self.stage[2][k];
-                    }
-                }
+                add(&mut self.scratch, 1.0, &self.stage[2]);
             }
             if i > 0 {
                 m.mass.multiply_add(1.0, &self.scratch, &mut self.rhs);
@@ -118,10 +113,13 @@ impl Rodas4 {
                 *w = g * r;
             }
             self.factors.solve(w);
-            for k in 0..self.rhs.len() {
-                self.p[i][k] = g * (self.w[i][k] + self.shift[k]);
-                if varies {
-                    self.a[i][k] += self.w[i][k] / g;
+            for ((p, w), s) in self.p[i].iter_mut().zip(&*w).zip(&self.shift) {
+                *p = g * (w + s);
+            }
+            if varies {
+                let by_g = 1.0 / g;
+                for ((a, w), b) in self.a[i].iter_mut().zip(&*w).zip(&self.scratch) {
+                    *a = w * by_g - b;
                 }
             }
         }
@@ -207,7 +205,7 @@ impl Kernel for Blend<'_> {
     }
 }
 
-#[inline]
+/// y += s x.
 fn add(y: &mut [f64], s: f64, x: &[f64]) {
     for (y, x) in y.iter_mut().zip(x) {
         *y += s * x;

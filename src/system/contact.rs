@@ -91,13 +91,12 @@ impl SurfaceFrame {
 pub fn near(surface: &Surface, frame: &SurfaceFrame, u: &[Vec3<f64>; 4], l: f64) -> bool {
     let third = l / 3.0;
     let middle: Vec3<f64> = std::array::from_fn(|c| 0.5 * (u[0][c] + u[2][c]));
-    let reach2 = [u[0], axpy(&u[0], third, &u[1]), axpy(&u[2], -third, &u[3])]
+    let reach = [u[0], axpy(&u[0], third, &u[1]), axpy(&u[2], -third, &u[3])]
         .iter()
         .map(|p| (0..3).map(|c| (p[c] - middle[c]).powi(2)).sum::<f64>())
-        .fold(0.0, f64::max);
-    let at = axpy(&mat_vec(&frame.rotation, &middle), 1.0, &frame.base);
-    let (gap, beyond) = (surface.least_gap(&at), surface.beyond(&at));
-    (gap <= 0.0 || gap * gap < reach2) && (beyond <= 0.0 || beyond * beyond < reach2)
+        .fold(0.0, f64::max)
+        .sqrt();
+    surface.within(&axpy(&mat_vec(&frame.rotation, &middle), 1.0, &frame.base), reach)
 }
 
 /// Calls `found` with every arc of element `e` in contact with a face (its index first).
@@ -108,9 +107,11 @@ pub fn touching(surface: &Surface, curve: &Cubic, e: usize, mut found: impl FnMu
     }
 }
 
-/// Forces (and stiffness, damping) of one element in the surface's axes.
-struct Assembly {
-    forces: [[f64; 3]; 4],
+/// Forces of one element in the surface's axes.
+type Forces = [[f64; 3]; 4];
+
+/// Stiffness and damping of one element in the surface's axes.
+struct Tangent {
     stiffness: [[f64; 12]; 12],
     damping: [[f64; 12]; 12],
 }
@@ -128,129 +129,140 @@ impl System {
                     continue;
                 }
                 let (relative, curve) = frame.shape(&slots, l);
-                let velocity = frame.velocity(&relative, &gather(w, e), l);
-                let mut sum = Assembly { forces: [[0.0; 3]; 4], stiffness: [[0.0; 12]; 12], damping: [[0.0; 12]; 12] };
+                let velocity = surface.is_damped().then(|| frame.velocity(&relative, &gather(w, e), l));
+                let velocity = velocity.as_ref();
+                let mut forces: Forces = [[0.0; 3]; 4];
+                let mut tangent: Option<Tangent> = None;
                 let mut touched = false;
                 touching(surface, &curve, e, |side, face, arc| {
                     touched = true;
-                    sum.arc::<TANGENT>(surface, side, face, &arc, &curve, &velocity, &frame.turn, l, total);
+                    push(surface, side, face, &arc, &curve, velocity, l, &mut forces, total);
+                    if TANGENT {
+                        let tangent = tangent.get_or_insert(Tangent { stiffness: [[0.0; 12]; 12], damping: [[0.0; 12]; 12] });
+                        tangent.arc(surface, face, &arc, &curve, velocity, &frame.turn, l);
+                    }
                 });
                 if touched {
-                    sum.to_world::<TANGENT>(&frame.rotation, e, &mut self.contact_forces[e], surface.is_damped(), m);
+                    let (r, out) = (&frame.rotation, &mut self.contact_forces[e]);
+                    for i in 0..4 {
+                        for c in 0..3 {
+                            out[3 * i + c] += (0..3).map(|k| r[k][c] * forces[i][k]).sum::<f64>();
+                        }
+                    }
+                }
+                if let Some(tangent) = tangent {
+                    add_turned(&mut m.stiffness, e, &frame.rotation, &tangent.stiffness);
+                    if surface.is_damped() {
+                        add_turned(&mut m.damping, e, &frame.rotation, &tangent.damping);
+                    }
                 }
             }
         }
     }
 }
 
-impl Assembly {
+/// Adds an arc's forces.
+#[inline]
+fn push(
+    surface: &Surface,
+    side: usize,
+    face: Face,
+    arc: &Arc,
+    curve: &Cubic,
+    velocity: Option<&Cubic>,
+    l: f64,
+    forces: &mut Forces,
+    total: &mut SurfaceLoad,
+) {
+    let length = arc.to - arc.from;
+    for (position, weight) in GAUSS5 {
+        let x = arc.from + length * position;
+        let s = curve.at(x);
+        let Some(load) = surface.load::<false>(face, &s, &velocity.map_or([0.0; 3], |v| v.at(x)), 0.0) else { continue };
+        let shape = shape::value(x, l);
+        let wl = weight * length * l;
+        let f = load.f.map(|f| wl * f);
+        total.faces[side] += wl * load.normal;
+        for c in 0..3 {
+            total.force[c] += f[c];
+            total.moment[c] += s[(c + 1) % 3] * f[(c + 2) % 3] - s[(c + 2) % 3] * f[(c + 1) % 3];
+            for i in 0..4 {
+                forces[i][c] += shape[i] * f[c];
+            }
+        }
+    }
+}
+
+impl Tangent {
     /// Adds an arc.
-    #[inline]
-    fn arc<const TANGENT: bool>(
-        &mut self,
-        surface: &Surface,
-        side: usize,
-        face: Face,
-        arc: &Arc,
-        curve: &Cubic,
-        velocity: &Cubic,
-        turn: &Mat3<f64>,
-        l: f64,
-        total: &mut SurfaceLoad,
-    ) {
+    fn arc(&mut self, surface: &Surface, face: Face, arc: &Arc, curve: &Cubic, velocity: Option<&Cubic>, turn: &Mat3<f64>, l: f64) {
         let length = arc.to - arc.from;
         let damped = surface.is_damped();
         // ∂Q/∂from and ∂Q/∂to of the rule, points moving along.
         let mut by_ends = [[0.0; 12]; 2];
         for (position, weight) in GAUSS5 {
             let x = arc.from + length * position;
-            let (s, v) = (curve.at(x), velocity.at(x));
-            let Some(load) = surface.load::<TANGENT>(face, &s, &v, 0.0) else { continue };
+            let Some(load) = surface.load::<true>(face, &curve.at(x), &velocity.map_or([0.0; 3], |v| v.at(x)), 0.0) else { continue };
             let shape = shape::value(x, l);
             let wl = weight * length * l;
-            let f = load.f.map(|f| wl * f);
-            total.faces[side] += wl * load.normal;
-            for c in 0..3 {
-                total.force[c] += f[c];
-                total.moment[c] += s[(c + 1) % 3] * f[(c + 2) % 3] - s[(c + 2) % 3] * f[(c + 1) % 3];
-                for i in 0..4 {
-                    self.forces[i][c] += shape[i] * f[c];
+            let mut ds = load.ds;
+            if damped {
+                for r in 0..3 {
+                    for c in 0..3 {
+                        ds[r][c] += (0..3).map(|k| load.dv[r][k] * turn[k][c]).sum::<f64>();
+                    }
                 }
             }
-            if TANGENT {
-                let mut ds = load.ds;
-                if damped {
+            for i in 0..4 {
+                for j in 0..4 {
+                    let both = wl * shape[i] * shape[j];
                     for r in 0..3 {
                         for c in 0..3 {
-                            ds[r][c] += (0..3).map(|k| load.dv[r][k] * turn[k][c]).sum::<f64>();
+                            self.stiffness[3 * i + r][3 * j + c] -= both * ds[r][c];
                         }
                     }
-                }
-                for i in 0..4 {
-                    for j in 0..4 {
-                        let both = wl * shape[i] * shape[j];
+                    if damped {
                         for r in 0..3 {
                             for c in 0..3 {
-                                self.stiffness[3 * i + r][3 * j + c] -= both * ds[r][c];
-                            }
-                        }
-                        if damped {
-                            for r in 0..3 {
-                                for c in 0..3 {
-                                    self.damping[3 * i + r][3 * j + c] -= both * load.dv[r][c];
-                                }
+                                self.damping[3 * i + r][3 * j + c] -= both * load.dv[r][c];
                             }
                         }
                     }
                 }
-                if arc.moving != [false, false] {
-                    // d/dξ of sᵢ f.
-                    let fx = axpy(&mat_vec(&load.ds, &curve.slope(x)), 1.0, &mat_vec(&load.dv, &velocity.slope(x)));
-                    let slope = shape::slope(x, 1.0 / l);
-                    for k in 0..12 {
-                        let (i, c) = (k / 3, k % 3);
-                        let (g, rate) = (shape[i] * load.f[c], l * slope[i] * load.f[c] + shape[i] * fx[c]);
-                        by_ends[0][k] += weight * l * (length * rate * (1.0 - position) - g);
-                        by_ends[1][k] += weight * l * (length * rate * position + g);
-                    }
+            }
+            if arc.moving != [false, false] {
+                // d/dξ of sᵢ f.
+                let mut fx = mat_vec(&load.ds, &curve.slope(x));
+                if let Some(v) = velocity {
+                    fx = axpy(&fx, 1.0, &mat_vec(&load.dv, &v.slope(x)));
+                }
+                let slope = shape::slope(x, 1.0 / l);
+                for k in 0..12 {
+                    let (i, c) = (k / 3, k % 3);
+                    let (g, rate) = (shape[i] * load.f[c], l * slope[i] * load.f[c] + shape[i] * fx[c]);
+                    by_ends[0][k] += weight * l * (length * rate * (1.0 - position) - g);
+                    by_ends[1][k] += weight * l * (length * rate * position + g);
                 }
             }
         }
-        if TANGENT {
-            for (end, x) in [arc.from, arc.to].into_iter().enumerate() {
-                if !arc.moving[end] {
-                    continue;
-                }
-                // The root's rate by the slots, −∇gap sᵢ / gap′; none where the cable only grazes the surface.
-                let s = curve.at(x);
-                let rho = (s[1] * s[1] + s[2] * s[2]).sqrt();
-                let n = [face.axial, face.radial * s[1] / rho, face.radial * s[2] / rho];
-                let slope = dot(&n, &curve.slope(x));
-                if slope.abs() <= 1e-9 * l {
-                    continue;
-                }
-                let shape = shape::value(x, l);
-                for j in 0..12 {
-                    let rate = -shape[j / 3] * n[j % 3] / slope;
-                    for i in 0..12 {
-                        self.stiffness[i][j] -= by_ends[end][i] * rate;
-                    }
-                }
+        for (end, x) in [arc.from, arc.to].into_iter().enumerate() {
+            if !arc.moving[end] {
+                continue;
             }
-        }
-    }
-
-    /// Turns everything into world axes and adds it to the element's forces and matrices.
-    fn to_world<const TANGENT: bool>(&self, r: &Mat3<f64>, e: usize, forces: &mut [f64; 12], damped: bool, m: &mut Matrices) {
-        for i in 0..4 {
-            for c in 0..3 {
-                forces[3 * i + c] += (0..3).map(|k| r[k][c] * self.forces[i][k]).sum::<f64>();
+            // The root's rate by the slots, −∇gap sᵢ / gap′; none where the cable only grazes the surface.
+            let s = curve.at(x);
+            let rho = (s[1] * s[1] + s[2] * s[2]).sqrt();
+            let n = [face.axial, face.radial * s[1] / rho, face.radial * s[2] / rho];
+            let slope = dot(&n, &curve.slope(x));
+            if slope.abs() <= 1e-9 * l {
+                continue;
             }
-        }
-        if TANGENT {
-            add_turned(&mut m.stiffness, e, r, &self.stiffness);
-            if damped {
-                add_turned(&mut m.damping, e, r, &self.damping);
+            let shape = shape::value(x, l);
+            for j in 0..12 {
+                let rate = -shape[j / 3] * n[j % 3] / slope;
+                for i in 0..12 {
+                    self.stiffness[i][j] -= by_ends[end][i] * rate;
+                }
             }
         }
     }
