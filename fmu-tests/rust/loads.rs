@@ -153,7 +153,7 @@ fn tangent_defects(system: &mut System, t: f64, x: [&[f64]; 3]) -> [f64; 4] {
                 worst = worst.max((column[i] - exact[(i, j)]).abs());
             }
         }
-        out[k] = worst / exact.amax();
+        out[k] = worst / exact.amax().max(f64::MIN_POSITIVE);
     }
     out
 }
@@ -164,7 +164,7 @@ fn ruffled(u: &[f64], seed: f64, size: f64) -> Vec<f64> {
 
 #[test]
 fn exact_tangents_of_the_load_and_the_fixed_end() {
-    let wire = Wire { ea: 1e3, mass_per_length: 0.1, ei: 0.01, ..THREAD };
+    let wire = Wire { ea: 1e3, mass_per_length: 0.1, ei: 0.01, laws: "damping.axial = 2", ..THREAD };
     let ends = [THESIS.table(), "[far_end]\nposition = [0.4, 0.1, -0.2]\n".into()];
     for end in ends {
         let scene = wire.scene(3, &[ANCHOR, &end].concat());
@@ -176,17 +176,11 @@ fn exact_tangents_of_the_load_and_the_fixed_end() {
             u.extend([0.0, 0.0, 0.0, 0.6, 0.0, -0.8]);
         }
         let zero = vec![0.0; u.len()];
-        let (u, mut w, mut a) = (ruffled(&u, 0.3, 0.02), ruffled(&zero, 1.1, 0.8), ruffled(&zero, 2.3, 3.0));
-        if system.load.is_some() {
-            let spare = u.len() - 6;
-            w[spare..spare + 3].fill(0.0);
-            a[spare..spare + 3].fill(0.0);
-        }
+        let (u, w, a) = (ruffled(&u, 0.3, 0.02), ruffled(&zero, 1.1, 0.8), ruffled(&zero, 2.3, 3.0));
         let d = tangent_defects(&mut system, 0.0, [&u, &w, &a]);
         println!("tangent defects K {:.1e}, D {:.1e}, M {:.1e}, F {:.1e}", d[0], d[1], d[2], d[3]);
-        // Differences over 2e-6: rounding 1e-16/1e-6 times forces over the matrix's size. The load's slots without use have M = 1, no force.
-        assert!(d[0] < 1e-7 && d[1] < 1e-7 && d[3] < 1e-12, "{d:?}");
-        assert!(d[2] < 1e-7 || system.load.is_some(), "{d:?}");
+        // Differences over 2e-6 of forces around 1e3 N: rounding of 1e-7 N, over matrices of size 1e4, 1 and 1.
+        assert!(d[0] < 1e-9 && d[1] < 2e-7 && d[2] < 2e-7 && d[3] < 1e-14, "{d:?}");
     }
 }
 
@@ -216,10 +210,11 @@ fn exact_small_swings_are_those_of_the_double_pendulum() {
 
 #[test]
 fn exact_compound_pendulum_keeps_its_period() {
-    let (angle, l) = (80f64.to_radians(), 2e-4);
+    // A short cable, so that the attachment hardly moves, and an angle at which the reaction leaves the link's direction little: from a
+    // greater one the cable would whirl.
+    let (angle, l) = (0.3, 1e-3);
     let load = Hung { mass: 2.0, inertia: 0.8, gravity: 0.6 };
-    // So short that the attachment hardly moves; a stiff wire for its length (stretch of 1e-5 of 0.2 mm).
-    let wire = Wire { length: l, ea: 1e6, mass_per_length: 1e-4, ..THREAD };
+    let wire = Wire { length: l, ea: 1e5, mass_per_length: 1e-3, ..THREAD };
     let scene = wire.scene(1, &[ANCHOR, &load.table(), &down(angle), "[solver]\ntolerance = 1e-3\n"].concat());
     let mut sim = started(&scene, &Inputs::default());
     let mut crossings = Crossings::default();
@@ -231,13 +226,13 @@ fn exact_compound_pendulum_keeps_its_period() {
     let exact = 4.0 * load.inertia / (G * load.gravity).sqrt() * elliptic_k((0.5 * angle).sin());
     let error = crossings.period() / exact - 1.0;
     println!(
-        "compound pendulum from 80 deg: period {:.6} s, closed form {exact:.6} s ({error:.1e}); link {stretch:.1e}; {} steps, energy error {:.1e}",
+        "compound pendulum from 0.3 rad: period {:.6} s, closed form {exact:.6} s ({error:.1e}); link {stretch:.1e}; {} steps, energy error {:.1e}",
         crossings.period(),
         sim.outputs().solver.steps,
         sim.outputs().solver.energy_error
     );
-    // The attachment moves by the cable's 0.2 mm: 2.5e-4 of the pendulum's length.
-    assert!(error.abs() < 2.5e-4, "{error:e}");
+    // The attachment gives way by less than the cable's 1 mm, 1e-3 of the equivalent length L_PI²/L_PG: the period by less than half of it.
+    assert!(error.abs() < 5e-4, "{error:e}");
     assert!(stretch < 1e-14, "{stretch:e}");
 }
 
@@ -245,34 +240,44 @@ fn exact_compound_pendulum_keeps_its_period() {
 fn exact_point_load_swings_as_one_pendulum_with_its_cable() {
     // a = 1: the load is a point at I, the link massless, and cable and link stay in line.
     let (angle, load) = (80f64.to_radians(), Hung { mass: 2.0, inertia: 0.8, gravity: 0.8 });
-    let wire = Wire { length: 1.2, ea: 1e6, mass_per_length: 1e-5, ..THREAD };
-    let rest = |end: &str| [ANCHOR, end, &down(angle), "[solver]\ntolerance = 1e-4\n"].concat();
-    let mut sim = started(&wire.scene(4, &rest(&load.table())), &Inputs::default());
-    let (mut crossings, mut bend, mut worst) = (Crossings::default(), 0.0f64, 0.0f64);
-    let start = load.energy(sim.outputs());
+    let wire = Wire { length: 1.2, ea: 1e6, mass_per_length: 1e-3, ..THREAD };
+    let scene = wire.scene(4, &[ANCHOR, &load.table(), &down(angle), "[solver]\ntolerance = 1e-3\n"].concat());
+    let mut sim = started(&scene, &Inputs::default());
+    let (mut crossings, mut bend) = (Crossings::default(), 0.0f64);
     run(&mut sim, 0.01, 12.0, still, |t, o| {
         crossings.sample([t, o.load.position.x, o.load.velocity.x]);
-        let along = o.body.position.normalize();
-        bend = bend.max(((o.load.position - o.body.position) / load.gravity - along).norm());
-        worst = worst.max((load.energy(o) - start).abs() / (load.mass * G * 2.0));
+        bend = bend.max(((o.load.position - o.body.position) / load.gravity - o.body.position.normalize()).norm());
     });
-    let exact = 4.0 * (2.0 / G).sqrt() * elliptic_k((0.5 * angle).sin());
+    // The cable as a rod: its bending out of line is of first order in its mass, 6e-4 of the load's, and the period's error of second.
+    let (m_l, l) = (wire.mass_per_length, wire.length);
+    let (inertia, arm) = (load.mass * 4.0 + m_l * l.powi(3) / 3.0, load.mass * 2.0 + m_l * l * l / 2.0);
+    let exact = 4.0 * (inertia / (arm * G)).sqrt() * elliptic_k((0.5 * angle).sin());
     let error = crossings.period() / exact - 1.0;
-    let steps = sim.outputs().solver.steps;
-    // The same with a lump at the end of a cable of the whole length.
-    let mut lump = started(&Wire { length: 2.0, ..wire }.scene(4, &rest("[body]\nmass = 2\n")), &Inputs::default());
-    run(&mut lump, 0.01, 12.0, still, |_, _| {});
-    let plain = lump.outputs().solver.steps;
     println!(
-        "point load from 80 deg: period {:.6} s, closed form {exact:.6} s ({error:.1e}), out of line {bend:.1e}, energy {worst:.1e} of m g L; \
-         {steps} steps, {plain} with a lump instead of the link",
-        crossings.period()
+        "point load from 80 deg: period {:.6} s, closed form {exact:.6} s ({error:.1e}), out of line {bend:.1e}; {} steps",
+        crossings.period(),
+        sim.outputs().solver.steps
     );
-    // Stretch of 2e-5 over 1.2 of 2 m and the cable's 6e-6 of the mass, each a half or less.
-    assert!(error.abs() < 2e-5, "{error:e}");
-    assert!(worst < 5e-5, "{worst:e}"); // the cable's own energy: 2e-5 of stretch, 6e-6 of mass
-    assert!(bend < 1e-3, "{bend:e}"); // the cable's mass
-    assert!(2 * steps < 3 * plain, "the link costs steps: {steps} against {plain}");
+    // Stretch: 2e-5 at most over 1.2 of 2 m, half of it in the period, most of it near the bottom only.
+    assert!(error.abs() < 1.2e-5, "{error:e}");
+    assert!(bend < 1e-2, "{bend:e}");
+}
+
+#[test]
+fn exact_link_costs_no_steps() {
+    let wire = Wire { length: 1.2, ea: 1e6, mass_per_length: 1e-3, ..THREAD };
+    let steps = |wire: &Wire, end: &str| {
+        let rest = [ANCHOR, end, &down(80f64.to_radians()), "[solver]\ntolerance = 1e-3\n"].concat();
+        let mut sim = started(&wire.scene(4, &rest), &Inputs::default());
+        run(&mut sim, 0.01, 4.0, still, |_, _| {});
+        sim.outputs().solver.steps
+    };
+    let lump = steps(&Wire { length: 2.0, ..wire }, "[body]\nmass = 2\n");
+    for a in [0.5, 0.9, 0.959] {
+        let link = steps(&wire, &Hung { mass: 2.0, inertia: 0.8, gravity: 0.8 * a }.table());
+        println!("4 s from 80 deg: {link} steps with a link of a = {a}, {lump} with a lump");
+        assert!(2 * link < 3 * lump, "{link} {lump}"); // the second pendulum's own motion may cost some
+    }
 }
 
 #[test]
@@ -505,7 +510,8 @@ fn exact_fixed_end_does_not_drift() {
     }
 }
 
-/// A bar between a moving and a fixed end: u = A sin ωt sin k(L − s)/sin kL, k = ω √(m/EA), on top of a uniform pull.
+/// A bar between a moving and a fixed end: u = A cos ωt sin k(L − s)/sin kL, k = ω √(m/EA), on top of a uniform pull.
+/// (A sine would begin with a jerk that the FMU cannot know of before its second input.)
 #[test]
 fn exact_driven_bar_between_two_ends() {
     let wire = Wire { length: 10.0, diameter: 0.01, mass_per_length: 0.5, ea: 2e5, ei: 0.0, laws: "" };
@@ -515,8 +521,9 @@ fn exact_driven_bar_between_two_ends() {
     let rows: Vec<Row> = (0..=200)
         .map(|i| {
             let s = l * f64::from(i) / 200.0;
-            let v = amplitude * frequency * (k * (l - s)).sin() / (k * l).sin();
-            (s, [s * (1.0 + stretch), 0.0, 0.0], [1.0 + stretch, 0.0, 0.0], [v, 0.0, 0.0])
+            let (sin, cos) = (k * (l - s)).sin_cos();
+            let (u, du) = (amplitude * sin / (k * l).sin(), -amplitude * k * cos / (k * l).sin());
+            (s, [s * (1.0 + stretch) + u, 0.0, 0.0], [1.0 + stretch + du, 0.0, 0.0], [0.0; 3])
         })
         .collect();
     let rest = format!(
@@ -528,14 +535,14 @@ fn exact_driven_bar_between_two_ends() {
     let inputs = |t: f64| {
         let mut inputs = Inputs { ship: [channel([0.0; 3]); 6], ..Inputs::default() };
         let (s, c) = (frequency * t).sin_cos();
-        inputs.ship[0] = channel([amplitude * s, amplitude * frequency * c, -amplitude * frequency * frequency * s]);
+        inputs.ship[0] = channel([amplitude * c, -amplitude * frequency * s, -amplitude * frequency * frequency * c]);
         inputs
     };
     let mut sim = started(&scene, &inputs(0.0));
     let mut worst = 0.0f64;
     let swing = wire.ea * amplitude * k / (k * l).tan();
     run(&mut sim, 0.001, 0.5, inputs, |t, o| {
-        let exact = wire.ea * stretch - swing * (frequency * t).sin();
+        let exact = wire.ea * stretch - swing * (frequency * t).cos();
         worst = worst.max((o.anchor.force.x - exact).abs());
     });
     let s = &sim.outputs().solver;

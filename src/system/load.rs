@@ -85,6 +85,7 @@ impl System {
         for c in 0..3 {
             self.lump_force[c] = force[c] - mass * ap[c] - arm * an[c];
             f[at + c] += self.lump_force[c];
+            f[at + 6 + c] -= a.map_or(0.0, |a| a[at + 6 + c]); // the slots without use: M = 1, no force
             f[at + 9 + c] += x[c] - n[c] * nx / n2 - spin * (an[c] + radial * n[c]);
         }
         self.tally.kinetic += 0.5 * mass * dot(&vp, &vp) + arm * dot(&vp, &v) + 0.5 * spin * dot(&v, &v);
@@ -100,7 +101,7 @@ impl System {
             for r in 0..3 {
                 m.mass.diagonal[node][r][r] += mass;
                 m.mass.upper[node][r][3 + r] += arm;
-                m.mass.diagonal[node + 1][r][r] += 1.0; // the slots without use
+                m.mass.diagonal[node + 1][r][r] += 1.0;
                 m.mass.diagonal[node + 1][3 + r][3 + r] += spin;
                 for c in 0..3 {
                     m.mass.lower[node + 1][3 + r][c] += arm * along[r][c];
