@@ -417,7 +417,9 @@ impl Simulation {
 
     fn failure(&self, end: f64, node: usize, why: &str) -> String {
         let s = &self.state;
-        let p: Vec<String> = (0..3).map(|c| format!("{:.4}", s.u[6 * node.min(self.system.arc.len() - 1) + c] + self.system.environment(s.time).base[c].0[0])).collect();
+        let p: Vec<String> = (0..3)
+            .map(|c| format!("{:.4}", s.u[6 * node.min(self.system.arc.len() - 1) + c] + self.system.environment(s.time).base[c].0[0]))
+            .collect();
         format!(
             "at t = {:.6} s on the way to {end:.6} s, {:.4} m along the cable (node {node}, at ({}) m): {why} at sub-steps of {:.1e} s. \
              Try: smoother inputs (velocities beside poses), a shorter communication step, a softer contact stiffness, more damping, \

@@ -196,7 +196,14 @@ fn exact_small_swings_are_those_of_the_double_pendulum() {
         let slow = 2.0 * r / (-q + (q * q - 4.0 * p * r).sqrt());
         let fast = if p > 1e-12 { r / p / slow } else { f64::NAN };
         let errors = [w[0] / slow.sqrt() - 1.0, w[1] / fast.sqrt() - 1.0];
-        println!("double pendulum, cable {l} m, a = {:.3}: slow {:.7} rad/s ({:.1e}), fast {:.4} ({:.1e})", c / load.inertia, w[0], errors[0], w[1], errors[1]);
+        println!(
+            "double pendulum, cable {l} m, a = {:.3}: slow {:.7} rad/s ({:.1e}), fast {:.4} ({:.1e})",
+            c / load.inertia,
+            w[0],
+            errors[0],
+            w[1],
+            errors[1]
+        );
         // Stretch 1e-7 (92 N over 1e9 N), thread 1e-9 of the mass; in the fast swing it counts (1 − a²) times as much.
         assert!(errors[0].abs() < 3e-7, "{errors:?}");
         assert!(fast.is_nan() || errors[1].abs() < 3e-7, "{errors:?}");
@@ -214,8 +221,8 @@ fn exact_compound_pendulum_keeps_its_period() {
     // greater one the cable would whirl.
     let (angle, l) = (0.3, 1e-3);
     let load = Hung { mass: 2.0, inertia: 0.8, gravity: 0.6 };
-    let wire = Wire { length: l, ea: 1e5, mass_per_length: 1e-3, ..THREAD };
-    let scene = wire.scene(1, &[ANCHOR, &load.table(), &down(angle), "[solver]\ntolerance = 1e-3\n"].concat());
+    let wire = Wire { length: l, ea: 2e4, mass_per_length: 0.5, laws: "damping.axial = 10", ..THREAD };
+    let scene = wire.scene(1, &[ANCHOR, &load.table(), &down(angle), "[solver]\ntolerance = 1e-2\n"].concat());
     let mut sim = started(&scene, &Inputs::default());
     let mut crossings = Crossings::default();
     let mut stretch = 0.0f64;
@@ -223,7 +230,9 @@ fn exact_compound_pendulum_keeps_its_period() {
         crossings.sample([t, o.load.position.x, o.load.velocity.x]);
         stretch = stretch.max(load.stretch(o));
     });
-    let exact = 4.0 * load.inertia / (G * load.gravity).sqrt() * elliptic_k((0.5 * angle).sin());
+    // What the cable adds to first order in its length l: the slower root of the double pendulum, 1 + L_PG³ l/(2 L_PI⁴).
+    let give = 1.0 + load.gravity.powi(3) * l / (2.0 * load.inertia.powi(4));
+    let exact = 4.0 * load.inertia / (G * load.gravity).sqrt() * elliptic_k((0.5 * angle).sin()) * give;
     let error = crossings.period() / exact - 1.0;
     println!(
         "compound pendulum from 0.3 rad: period {:.6} s, closed form {exact:.6} s ({error:.1e}); link {stretch:.1e}; {} steps, energy error {:.1e}",
@@ -231,8 +240,8 @@ fn exact_compound_pendulum_keeps_its_period() {
         sim.outputs().solver.steps,
         sim.outputs().solver.energy_error
     );
-    // The attachment gives way by less than the cable's 1 mm, 1e-3 of the equivalent length L_PI²/L_PG: the period by less than half of it.
-    assert!(error.abs() < 5e-4, "{error:e}");
+    // Of `give`'s 2.6e-4 a share of angle² = 0.09 belongs to the amplitude; stretch adds 1e-3 of it.
+    assert!(error.abs() < 2.5e-5, "{error:e}");
     assert!(stretch < 1e-14, "{stretch:e}");
 }
 
@@ -244,6 +253,9 @@ fn exact_point_load_swings_as_one_pendulum_with_its_cable() {
     let scene = wire.scene(4, &[ANCHOR, &load.table(), &down(angle), "[solver]\ntolerance = 1e-3\n"].concat());
     let mut sim = started(&scene, &Inputs::default());
     let (mut crossings, mut bend) = (Crossings::default(), 0.0f64);
+    // The cable's own weight holds the load a little lower than the released force alone would.
+    let from = sim.outputs().load.position;
+    let angle = from.x.atan2(-from.z);
     run(&mut sim, 0.01, 12.0, still, |t, o| {
         crossings.sample([t, o.load.position.x, o.load.velocity.x]);
         bend = bend.max(((o.load.position - o.body.position) / load.gravity - o.body.position.normalize()).norm());
@@ -254,12 +266,14 @@ fn exact_point_load_swings_as_one_pendulum_with_its_cable() {
     let exact = 4.0 * (inertia / (arm * G)).sqrt() * elliptic_k((0.5 * angle).sin());
     let error = crossings.period() / exact - 1.0;
     println!(
-        "point load from 80 deg: period {:.6} s, closed form {exact:.6} s ({error:.1e}), out of line {bend:.1e}; {} steps",
+        "point load from {:.3} deg: period {:.6} s, closed form {exact:.6} s ({error:.1e}), out of line {bend:.1e}; {} steps",
+        angle.to_degrees(),
         crossings.period(),
         sim.outputs().solver.steps
     );
-    // Stretch: 2e-5 at most over 1.2 of 2 m, half of it in the period, most of it near the bottom only.
-    assert!(error.abs() < 1.2e-5, "{error:e}");
+    // Stretch: up to 3e-5 over 1.2 of 2 m, half of it in the period; and the sag at the start, 1.6e-3 of the angle of the cable alone, makes
+    // the amplitude uncertain by its share of the inertia.
+    assert!(error.abs() < 4e-5, "{error:e}");
     assert!(bend < 1e-2, "{bend:e}");
 }
 
@@ -417,15 +431,47 @@ fn exact_elastic_catenary_between_two_ends() {
         let mut errors = vec![];
         for elements in [16, 32] {
             let end = origin + span;
-            let rest = format!("[anchor]\nposition = [1, 2, 3]\n[far_end]\nposition = [{:?}, {:?}, {:?}]\n[outputs]\npoints = 2\n", end.x, end.y, end.z);
+            let rest = format!(
+                "[anchor]\nposition = [1, 2, 3]\n[far_end]\nposition = [{:?}, {:?}, {:?}]\n[outputs]\npoints = 2\n",
+                end.x, end.y, end.z
+            );
             let sim = started(&wire.scene(elements, &rest), &Inputs::default());
             let o = sim.outputs();
             assert!((o.cable.points[1] - end).norm() < 1e-14 * 10.0);
-            let reaction = (o.anchor.force - first).norm() / first.norm();
-            println!("catenary to ({:.1}, {:.1}, {:.1}) m, {elements} elements: reaction off by {reaction:.1e} of {:.3} N", span.x, span.y, span.z, first.norm());
+            let reaction = ((o.anchor.force - first).norm() + (o.far_end.force + force).norm()) / first.norm();
+            let tension = (o.far_end.tension / force.norm() - 1.0).abs();
+            assert!(tension < 1e-4, "{tension:e}"); // the slope's error squared
+            println!(
+                "catenary to ({:.1}, {:.1}, {:.1}) m, {elements} elements: reaction off by {reaction:.1e} of {:.3} N",
+                span.x,
+                span.y,
+                span.z,
+                first.norm()
+            );
             errors.push(reaction);
         }
         assert!(errors[1] < 1e-6, "{errors:?}");
+    }
+}
+
+#[test]
+fn exact_forces_balance_on_a_drum_and_a_fixed_end() {
+    let winch =
+        "[winch]\nposition = [0, 0, 0]\naxis = [0, 1, 0]\nradius = 0.5\nangle = 0.3\ngain_position = 1\ngain_rate = 1\nstiffness = 1e7\n";
+    let wire = Wire { length: 30.0, diameter: 0.02, mass_per_length: 1.0, ea: 1e6, ei: 5.0, laws: "" };
+    for end in [[-20.0, 3.0, -8.0], [-25.0, 0.0, 2.0], [-29.9, 0.0, -1.0]] {
+        let sim = started(&wire.scene(60, &format!("{winch}[far_end]\nposition = {end:?}\n")), &Inputs::default());
+        let o = sim.outputs();
+        let rest = o.winch.force + o.far_end.force + Vector3::z() * wire.length * wire.mass_per_length * G;
+        println!(
+            "drum to {end:?}: tension {:.3} N at the drum, {:.3} N at the far end; unbalanced {:.1e} N",
+            o.winch.tension,
+            o.far_end.tension,
+            rest.norm()
+        );
+        // The solver's 1e-10 of the weight at each of sixty nodes, or rounding of EA: 1e-7 N each.
+        assert!(rest.norm() < 60.0 * 1e-7, "{rest}");
+        assert!(o.winch.tension > o.far_end.tension || end[2] > 0.0);
     }
 }
 
@@ -546,7 +592,12 @@ fn exact_driven_bar_between_two_ends() {
         worst = worst.max((o.anchor.force.x - exact).abs());
     });
     let s = &sim.outputs().solver;
-    println!("driven bar: anchor force within {worst:.2e} N of a swing of {:.1} N; {} steps, energy error {:.1e}", swing.abs(), s.steps, s.energy_error);
+    println!(
+        "driven bar: anchor force within {worst:.2e} N of a swing of {:.1} N; {} steps, energy error {:.1e}",
+        swing.abs(),
+        s.steps,
+        s.energy_error
+    );
     assert!(worst < 2e-3 * swing.abs(), "{worst:e}");
     assert!(s.energy_error < 1e-4, "{:e}", s.energy_error);
 }
@@ -569,6 +620,7 @@ fn replays(scene: &Scene, inputs: impl Fn(f64) -> Inputs, h: f64) {
 fn replay_is_bit_identical_with_every_end() {
     let wire = Wire { length: 1.0, ea: 1e5, mass_per_length: 0.05, ei: 1e-3, ..THREAD };
     replays(&wire.scene(6, &[ANCHOR, &THESIS.table(), &down(0.5)].concat()), still, 0.01);
+    replays(&HEAVY_WIRE.scene(20, &[SHIP, WATER, &Hung { mass: 500.0, inertia: 2.0, gravity: 1.5 }.table()].concat()), tossing, 0.1);
     let rest = format!("{SHIP}{WATER}[far_end]\nposition = [140, 10, -80]\n");
     replays(&HEAVY_WIRE.scene(20, &rest), tossing, 0.1);
 }
@@ -613,4 +665,3 @@ fn exact_a_start_under_way_has_no_shock() {
     // v √(EA m) = 6 kN would be ten times the tension.
     assert!(most < 3.0 * by_statics + 0.02, "{most:e} {by_statics:e}");
 }
-

@@ -74,10 +74,7 @@ impl Rope {
         let h = |x: f64| x.hypot(self.a);
         let x = self.a * ((to / self.a).asinh() - (from / self.a).asinh()) + self.shear * s;
         let fall = h(from) - h(to);
-        (
-            self.across * x + self.down * fall,
-            self.across * (self.a / h(to) + self.shear) - self.down * (to / h(to)),
-        )
+        (self.across * x + self.down * fall, self.across * (self.a / h(to) + self.shear) - self.down * (to / h(to)))
     }
 }
 
