@@ -99,17 +99,8 @@ impl Simulation {
     /// # Errors
     /// [`SimError::Start`] when the scene asks for something that this version cannot do.
     pub fn new(scene: &Scene) -> Result<Self, SimError> {
-        let missing = [
-            (scene.load.is_some(), "[load]"),
-            (scene.far_end.is_some(), "[far_end]"),
-            (matches!(scene.initial, Initial::Released(_)), "[initial] state = \"released\""),
-            (
-                scene.winch.as_ref().is_some_and(|w| w.setpoint != crate::scene::Setpoint::External),
-                "[winch] setpoint other than \"external\"",
-            ),
-        ];
-        if let Some((_, what)) = missing.iter().find(|(present, _)| *present) {
-            return Err(SimError::Start(format!("{what} is not supported by this version")));
+        if scene.winch.as_ref().is_some_and(|w| w.setpoint != crate::scene::Setpoint::External) {
+            return Err(SimError::Start("[winch] setpoint other than \"external\" is not supported by this version".into()));
         }
         let mut system = System::new(scene);
         let (n, nodes) = (system.size(), system.nodes());
@@ -164,13 +155,36 @@ impl Simulation {
         state.counts = [0; 3];
         state.w.fill(0.0);
         state.a.fill(0.0);
-        let mass = system.cable_mass() + system.lump.mass;
+        let mass = system.cable_mass() + system.end_mass();
         let weight = (mass * scene.gravity).max(1e-9 * scene.cable.ea);
         match &scene.initial {
             Initial::Equilibrium => {
                 let down = Vector3::new(0.0, 0.0, if net_weight(scene) >= 0.0 { -1.0 } else { 1.0 });
-                state.u.copy_from_slice(&equilibrium::lay_out(system, time, &down).map_err(SimError::Start)?);
+                let mut start = match system.far_end {
+                    Some(_) => equilibrium::lay_between(system, time, &down),
+                    None => equilibrium::lay_out(system, time, &down),
+                }
+                .map_err(SimError::Start)?;
+                if system.load.is_some() {
+                    // A load has weight only, whatever the cable does.
+                    start[n - 1] = -1.0;
+                }
+                state.u.copy_from_slice(&start);
                 equilibrium::solve(system, time, &mut state.u, weight).map_err(SimError::Start)?;
+                equilibrium::follow(system, time, &state.u, &mut state.w);
+            }
+            Initial::Released(direction) => {
+                // F = m g k + T u with T = −m g u·k.
+                let pull = system.end_mass() * scene.gravity;
+                let force = Vector3::z() * pull - direction * (pull * direction.z);
+                let inputs = system.body_force;
+                for c in 0..3 {
+                    system.body_force[c].value += force[c];
+                }
+                state.u.copy_from_slice(&equilibrium::lay_out(system, time, direction).map_err(SimError::Start)?);
+                let found = equilibrium::solve(system, time, &mut state.u, weight);
+                system.body_force = inputs;
+                found.map_err(SimError::Start)?;
             }
             Initial::Straight(direction) => {
                 for (x, s) in state.u.chunks_exact_mut(6).zip(&system.arc) {
@@ -178,10 +192,18 @@ impl Simulation {
                         (x[c], x[3 + c]) = (s * direction[c], direction[c]);
                     }
                 }
+                if system.load.is_some() {
+                    state.u[n - 3..].copy_from_slice(direction.as_slice());
+                }
+                equilibrium::meet(system, time, &mut state.u).map_err(SimError::Start)?;
+                equilibrium::glide(system, time, &mut state.w);
             }
-            Initial::Shape(points) => shape(system, time, points, &mut state.u, &mut state.w).map_err(SimError::Start)?,
-            Initial::Released(_) => return Err(SimError::Start("[initial] state = \"released\" is not supported by this version".into())),
+            Initial::Shape(points) => {
+                shape(system, time, points, &mut state.u, &mut state.w).map_err(SimError::Start)?;
+                equilibrium::meet(system, time, &mut state.u).map_err(SimError::Start)?;
+            }
         }
+        system.reach(time, &mut state.u, &mut state.w, &mut state.a);
         debug_assert_eq!(n, state.u.len());
         state.tension = weight;
         state.step = self.scene.solver.step_max;
@@ -328,6 +350,7 @@ impl Simulation {
             self.system.linearize(s.time, &s.u, &s.w, &s.a, &mut k.matrices, &mut k.force);
             s.ledger.reach(&self.system.tally, &s.w, &k.force);
             loop {
+                self.system.attempt(s.time, h);
                 let trial = self.method.attempt(&mut self.system, s.time, h, [&s.u, &s.w, &s.a], &k.matrices, &k.force);
                 s.counts[2] += 6;
                 let (error, why) = match trial {
@@ -370,6 +393,7 @@ impl Simulation {
             }
             self.system.force(s.time + 0.5 * h, mid_u, mid_w, None, mid_f);
             s.ledger.pass(h, &self.system.tally, mid_w, mid_f);
+            self.system.reach(to, &mut s.u, &mut s.w, &mut s.a);
             s.time = to;
             s.counts[0] += 1;
             if taken >= solver.steps_max && s.time < end {
@@ -389,13 +413,15 @@ impl Simulation {
 
     fn failure(&self, end: f64, node: usize, why: &str) -> String {
         let s = &self.state;
-        let p: Vec<String> = (0..3).map(|c| format!("{:.4}", s.u[6 * node + c] + self.system.environment(s.time).base[c].0[0])).collect();
+        let p: Vec<String> = (0..3)
+            .map(|c| format!("{:.4}", s.u[6 * node.min(self.system.arc.len() - 1) + c] + self.system.environment(s.time).base[c].0[0]))
+            .collect();
         format!(
             "at t = {:.6} s on the way to {end:.6} s, {:.4} m along the cable (node {node}, at ({}) m): {why} at sub-steps of {:.1e} s. \
              Try: smoother inputs (velocities beside poses), a shorter communication step, a softer contact stiffness, more damping, \
              or a larger solver.tolerance",
             s.time,
-            self.system.arc[node],
+            self.system.arc_of(node),
             p.join(", "),
             s.step,
         )
@@ -414,6 +440,7 @@ impl Simulation {
         self.system.chain = fresh.chain;
         self.system.lump = fresh.lump;
         self.system.surfaces = fresh.surfaces;
+        self.system.load = fresh.load;
         if let (FirstEnd::Winch { drive, .. }, Some(winch)) = (&mut self.system.first, &scene.winch) {
             drive.retune(winch);
         }
@@ -497,7 +524,7 @@ impl State {
 /// Weight less buoyancy of cable and body when all is under water, N.
 fn net_weight(scene: &Scene) -> f64 {
     let (cable, body) = (&scene.cable, scene.body.as_ref());
-    let mass = cable.mass_per_length * cable.length + body.map_or(0.0, |b| b.mass);
+    let mass = cable.mass_per_length * cable.length + body.map_or(0.0, |b| b.mass) + scene.load.map_or(0.0, |l| l.mass);
     let volume = std::f64::consts::PI * cable.diameter.powi(2) / 4.0 * cable.length + body.map_or(0.0, |b| b.volume);
     mass - scene.fluid.as_ref().map_or(0.0, |f| f.density * volume)
 }
@@ -543,6 +570,17 @@ fn shape(system: &System, t: f64, points: &[crate::scene::ShapePoint], u: &mut [
             (u[6 * node + c], u[6 * node + 3 + c]) = (position[c], slope[c]);
             (w[6 * node + c], w[6 * node + 3 + c]) = (velocity[c], rate[c]);
         }
+    }
+    if system.load.is_some() {
+        // A load is not in the file: it points, and turns, as the cable's end does.
+        let (last, end) = (6 * (system.arc.len() - 1) + 3, u.len() - 3);
+        let slope = Vector3::new(u[last], u[last + 1], u[last + 2]);
+        let rate = Vector3::new(w[last], w[last + 1], w[last + 2]);
+        if slope.norm() < 1e-9 {
+            return Err("initial.file gives no direction at the cable's end, which the load needs; expected tx, ty, tz there".into());
+        }
+        u[end..].copy_from_slice((slope / slope.norm()).as_slice());
+        w[end..].copy_from_slice((rate / slope.norm()).as_slice()); // its part along the link goes with the projection
     }
     u[..3].fill(0.0);
     w[..3].fill(0.0);

@@ -94,6 +94,8 @@ pub struct Shape {
     pub body_force: bool,
     /// There is a rigid load.
     pub load: bool,
+    /// The far end is fixed.
+    pub far_end: bool,
     /// Number of `cable.point[k]`.
     pub points: usize,
 }

@@ -80,6 +80,10 @@ pub enum Output {
     LoadTension,
     /// `load.angle`.
     LoadAngle,
+    /// Force of the cable on the fixed far end: component.
+    FarEndForce(usize),
+    /// `far_end.tension`.
+    FarEndTension,
     /// `status.code`.
     StatusCode,
     /// `status.message`.
@@ -204,6 +208,7 @@ const ANCHOR: Occurs = If(|s| s.anchor);
 const SHIP: Occurs = If(|s| s.ship_derivatives.is_some());
 const BODY: Occurs = If(|s| s.body);
 const LOAD: Occurs = If(|s| s.load);
+const FAR_END: Occurs = If(|s| s.far_end);
 
 fn derivatives(shape: &Shape, order: usize) -> bool {
     shape.ship_derivatives.is_some_and(|n| n >= order)
@@ -261,6 +266,8 @@ pub static FAMILIES: &[Family] = &[
     output(171, "load.{vx,vy,vz}", LOAD, Real(&u::VELOCITY), |_, c| Output::LoadVelocity(c), "Velocity of the load's centre of gravity in the inertial frame, {}"),
     output(172, "load.tension", LOAD, Real(&u::FORCE), |_, _| Output::LoadTension, "Axial force of the cable at the load"),
     output(173, "load.angle", LOAD, Real(&u::ARC_ANGLE), |_, _| Output::LoadAngle, "Angle of the load's link from the vertical"),
+    output(174, "far_end.force.{x,y,z}", FAR_END, Real(&u::FORCE), |_, c| Output::FarEndForce(c), "Force of the cable on what holds its far end, inertial frame, {}"),
+    output(175, "far_end.tension", FAR_END, Real(&u::FORCE), |_, _| Output::FarEndTension, "Axial force of the cable at its far end"),
     output(180, "status.code", Always, Integer, |_, _| Output::StatusCode, "0 fine, 1 degraded (results still usable, see status.message), 2 stopped (outputs keep the last good values)"),
     output(181, "status.message", Always, Text, |_, _| Output::StatusMessage, "Why the status code is not 0; empty when all is fine"),
     output(190, "solver.steps", Always, Integer, |_, _| Output::SolverSteps, "Accepted sub-steps since the start"),

@@ -8,8 +8,10 @@
 //! by percents; its shape is nearly right, and each stiffer one starts from the last.
 
 mod layout;
+mod span;
 
 pub use layout::lay_out;
+pub use span::{follow, glide, lay_between, meet};
 
 use crate::integrator::Problem;
 use crate::math::lanes::{axpy, mat_vec};
@@ -154,6 +156,6 @@ fn iterate(system: &mut System, t: f64, u: &mut [f64], load: f64, tolerance: f64
     Err(format!(
         "no static equilibrium found: {worst:.3e} N remain unbalanced (tolerated: {small:.1e} N), most at {:.4} m along the cable; \
          try [initial] state = \"straight\" or \"shape\", more elements there, or a softer contact stiffness",
-        system.arc[node]
+        system.arc_of(node)
     ))
 }

@@ -26,6 +26,8 @@ pub struct Outputs {
     pub body: BodyOutputs,
     /// The rigid load at the far end.
     pub load: LoadOutputs,
+    /// The fixed far end.
+    pub far_end: FarEndOutputs,
     /// Solver statistics.
     pub solver: SolverOutputs,
     /// How the run fares.
@@ -139,6 +141,15 @@ pub struct LoadOutputs {
     pub angle: f64,
 }
 
+/// The fixed far end.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FarEndOutputs {
+    /// Force of the cable on what holds it, world, N.
+    pub force: Vector3<f64>,
+    /// Section's axial force there, N.
+    pub tension: f64,
+}
+
 /// Solver statistics since the start of the run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SolverOutputs {
@@ -213,6 +224,8 @@ impl Outputs {
         vector(&mut self.load.velocity, visit);
         visit(&mut self.load.tension);
         visit(&mut self.load.angle);
+        vector(&mut self.far_end.force, visit);
+        visit(&mut self.far_end.tension);
         for n in [&mut self.solver.steps, &mut self.solver.rejected, &mut self.solver.iterations] {
             count(n, visit);
         }

@@ -69,6 +69,22 @@ pub fn observe(system: &System, env: &Environment, u: &[f64], w: &[f64], f: &[f6
     out.body.position = Vector3::from_fn(|c, _| u[at + c] + env.base[c].0[0]);
     out.body.velocity = Vector3::from_fn(|c, _| w[at + c] + env.base[c].0[1]);
     out.body.tension = nodal_tension(system, u, last + 1);
+    load(system, u, w, out);
+    if system.far_end.is_some() {
+        out.far_end.force = Vector3::new(f[at], f[at + 1], f[at + 2]);
+        out.far_end.tension = out.body.tension;
+    }
+}
+
+/// The rigid load, from the attachment's motion and its own direction.
+fn load(system: &System, u: &[f64], w: &[f64], out: &mut Outputs) {
+    let Some(load) = &system.load else { return };
+    let tail = |x: &[f64]| Vector3::new(x[x.len() - 3], x[x.len() - 2], x[x.len() - 1]);
+    let (n, turning) = (tail(u), tail(w));
+    out.load.position = out.body.position + n * load.gravity;
+    out.load.velocity = out.body.velocity + turning * load.gravity;
+    out.load.tension = out.body.tension;
+    out.load.angle = n.x.hypot(n.y).atan2(-n.z);
 }
 
 fn cable(system: &System, env: &Environment, u: &[f64], w: &[f64], out: &mut Outputs) {

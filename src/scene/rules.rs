@@ -153,6 +153,18 @@ fn initial(tree: &Table, problems: &mut Problems) {
     if string(tree, "initial.state") == Some("released") && !has(tree, "body") && !has(tree, "load") {
         problems.add_once("initial.state", "found \"released\", which needs a [body] or a [load] to be released");
     }
+    if string(tree, "initial.state") == Some("released") {
+        // The released force T u with T = −m g u·k holds a rope taut only where u points down and things have weight.
+        let z = get(tree, "initial.direction").and_then(|d| d.get(2)?.as_float());
+        let (sign, wanted) = if string(tree, "ship.frame") == Some("ned") { (1.0, "> 0, z down") } else { (-1.0, "< 0, z up") };
+        if let Some(z) = z.filter(|z| z * sign <= 0.0) {
+            let message = format!("found {z} for its third number; a rope that hangs taut before it is released points down ({wanted})");
+            problems.add_once("initial.direction", message);
+        }
+        if real(tree, "gravity") == Some(0.0) {
+            problems.add_once("initial.state", "found \"released\" with gravity = 0; without weight nothing holds the rope taut");
+        }
+    }
     if let Some(file) = string(tree, "initial.file") {
         let inside = Path::new(file).components().all(|c| matches!(c, Component::Normal(_)));
         if file.is_empty() || !inside || file.contains(['\\', ':']) || file == "scene.toml" {

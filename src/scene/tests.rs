@@ -227,8 +227,13 @@ fn exact_problems_name_key_value_and_expectation() {
         ),
         (
             "[mesh]",
-            "[initial]\nstate = \"released\"\ndirection = [1, 0, 0]\n[mesh]",
+            "[initial]\nstate = \"released\"\ndirection = [1, 0, -1]\n[mesh]",
             "s.toml: initial.state: found \"released\", which needs a [body] or a [load] to be released",
+        ),
+        (
+            "[mesh]",
+            "[load]\nmass = 1\nlength_inertia = 2\nlength_gravity = 1\n[initial]\nstate = \"released\"\ndirection = [1, 0, 0]\n[mesh]",
+            "s.toml: initial.direction: found 0 for its third number; a rope that hangs taut before it is released points down (< 0, z up)",
         ),
         (
             "[mesh]",

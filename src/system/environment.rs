@@ -10,6 +10,8 @@ use crate::ship::Frame;
 pub struct Environment {
     /// World motion of the cable's first node.
     pub base: [Jet; 3],
+    /// ü of a fixed far end, m/s².
+    pub far_end_acceleration: Vec3<f64>,
     /// World direction along which a `tangent` end holds the slope.
     pub tangent: Vec3<f64>,
     /// The ship.

@@ -6,6 +6,8 @@
 pub mod contact;
 mod elements;
 mod environment;
+mod far_end;
+mod load;
 mod matrices;
 mod points;
 mod wetting;
@@ -13,6 +15,8 @@ mod wetting;
 pub use contact::SurfaceLoad;
 pub use elements::{Chain, Tally, Wetness, gather};
 pub use environment::Environment;
+pub use far_end::FarEnd;
+pub use load::RigidLoad;
 pub use matrices::Matrices;
 pub use points::ElementPoint;
 
@@ -95,6 +99,10 @@ pub struct System {
     pub first: FirstEnd,
     /// The last end.
     pub lump: Lump,
+    /// A rigid load there.
+    pub load: Option<RigidLoad>,
+    /// Or a fixed end.
+    pub far_end: Option<FarEnd>,
     /// The ship.
     pub ship: ShipDrive,
     /// Time at which the present step began, s.
@@ -161,6 +169,8 @@ impl System {
             arc,
             first,
             lump,
+            load: scene.load.as_ref().map(RigidLoad::from),
+            far_end: scene.far_end.map(|r| FarEnd::new(r.into())),
             ship: ShipDrive::default(),
             begin: 0.0,
             current: Default::default(),
@@ -181,9 +191,19 @@ impl System {
         }
     }
 
-    /// Number of nodes.
+    /// Number of blocks of six unknowns: the cable's nodes, and the load's.
     pub fn nodes(&self) -> usize {
-        self.arc.len()
+        self.arc.len() + usize::from(self.load.is_some())
+    }
+
+    /// Arc length of a block, the load's being the cable's end, m.
+    pub fn arc_of(&self, node: usize) -> f64 {
+        self.arc[node.min(self.arc.len() - 1)]
+    }
+
+    /// Mass of what hangs at the last node, kg.
+    pub fn end_mass(&self) -> f64 {
+        self.lump.mass + self.load.map_or(0.0, |l| l.mass)
     }
 
     /// Element and ξ of arc length `s`.
@@ -223,9 +243,14 @@ impl System {
         if self.frozen {
             for b in &mut base {
                 (b.0[2], b.0[3]) = (0.0, 0.0);
+                // Between two fixed ends nothing is towed.
+                if self.far_end.is_some() {
+                    b.0[1] = 0.0;
+                }
             }
         }
         Environment {
+            far_end_acceleration: self.far_end.map_or([0.0; 3], |end| end.acceleration(t, &base)),
             base,
             tangent,
             frame,
@@ -262,6 +287,7 @@ impl System {
             }
         }
         self.ends::<TANGENT>(env, u, w, a, f, m);
+        self.account_for_far_end(env, u, w);
     }
 
     /// Elements that the water's surface crosses: fluid forces on the wet pieces, each with its own three points.
@@ -310,7 +336,38 @@ impl System {
 
     /// The body at the last node and the clamp at the first.
     fn ends<const TANGENT: bool>(&mut self, env: &Environment, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64], m: &mut Matrices) {
-        let n = self.nodes() - 1;
+        self.lumped::<TANGENT>(env, u, w, a, f, m);
+        self.hang::<TANGENT>(env, u, w, a, f, m);
+        if let FirstEnd::Winch { clamp, .. } = &self.first
+            && *clamp > 0.0
+        {
+            // ½ k ‖r_p − t (t·r_p)‖²: holds the direction, leaves the stretch.
+            let t = env.tangent;
+            let p = [u[3], u[4], u[5]];
+            let along = dot(&p, &t);
+            self.clamp_force = std::array::from_fn(|c| -clamp * (p[c] - along * t[c]));
+            for c in 0..3 {
+                f[3 + c] += self.clamp_force[c];
+            }
+            if TANGENT {
+                let mut k = [[0.0; 3]; 3];
+                add_identity(&mut k, *clamp);
+                add_outer(&mut k, -clamp, &t, &t);
+                for r in 0..3 {
+                    for c in 0..3 {
+                        m.stiffness.diagonal[0][3 + r][3 + c] += k[r][c];
+                    }
+                }
+            }
+        }
+    }
+
+    /// The lump at the last node.
+    fn lumped<const TANGENT: bool>(&mut self, env: &Environment, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64], m: &mut Matrices) {
+        if self.load.is_some() {
+            return;
+        }
+        let n = self.arc.len() - 1;
         let at = 6 * n;
         let mut force: Vec3<f64> = std::array::from_fn(|c| {
             let acc = env.base[c].0[2] + a.map_or(0.0, |a| a[at + c]);
@@ -351,38 +408,20 @@ impl System {
             f[at + c] += force[c];
         }
         self.lump_force = force;
-        if let FirstEnd::Winch { clamp, .. } = &self.first
-            && *clamp > 0.0
-        {
-            // ½ k ‖r_p − t (t·r_p)‖²: holds the direction, leaves the stretch.
-            let t = env.tangent;
-            let p = [u[3], u[4], u[5]];
-            let along = dot(&p, &t);
-            self.clamp_force = std::array::from_fn(|c| -clamp * (p[c] - along * t[c]));
-            for c in 0..3 {
-                f[3 + c] += self.clamp_force[c];
-            }
-            if TANGENT {
-                let mut k = [[0.0; 3]; 3];
-                add_identity(&mut k, *clamp);
-                add_outer(&mut k, -clamp, &t, &t);
-                for r in 0..3 {
-                    for c in 0..3 {
-                        m.stiffness.diagonal[0][3 + r][3 + c] += k[r][c];
-                    }
-                }
-            }
-        }
     }
 
-    /// Prescribed rows (the first node's position) of the matrices.
-    fn pin(m: &mut Matrices) {
-        for r in 0..3 {
-            for b in [&mut m.mass, &mut m.damping, &mut m.stiffness] {
-                b.diagonal[0][r] = [0.0; 6];
-                b.upper[0][r] = [0.0; 6];
+    /// Prescribed rows (positions of the first node and of a fixed far end) of the matrices.
+    fn pin(&self, m: &mut Matrices) {
+        let far = self.far_end.map(|_| self.arc.len() - 1);
+        for node in [Some(0), far].into_iter().flatten() {
+            for r in 0..3 {
+                for b in [&mut m.mass, &mut m.damping, &mut m.stiffness] {
+                    b.lower[node][r] = [0.0; 6];
+                    b.diagonal[node][r] = [0.0; 6];
+                    b.upper[node][r] = [0.0; 6];
+                }
+                m.mass.diagonal[node][r][r] = 1.0;
             }
-            m.mass.diagonal[0][r][r] = 1.0;
         }
     }
 
@@ -428,6 +467,7 @@ impl Problem for System {
         self.evaluate::<false>(&env, u, w, a, f, &mut none);
         self.matrices = none;
         f[..3].fill(0.0);
+        self.drive_far_end(&env, a, f);
     }
 
     fn linearize(&mut self, t: f64, u: &[f64], w: &[f64], a: &[f64], m: &mut Matrices, f: &mut [f64]) {
@@ -441,8 +481,9 @@ impl Problem for System {
         if varies {
             m.mass.multiply_add(1.0, a, f);
         }
-        Self::pin(m);
+        self.pin(m);
         f[..3].fill(0.0);
+        self.drive_far_end(&env, None, f);
     }
 
     fn time_derivative(&mut self, t: f64, scale: f64, u: &[f64], w: &[f64], force: &[f64], f: &mut [f64]) -> bool {
@@ -460,11 +501,12 @@ impl Problem for System {
         for (f, f0) in f.iter_mut().zip(force) {
             *f = (*f - f0) * i;
         }
+        self.far_end_rate(t, f);
         true
     }
 
     fn mass_varies(&self) -> bool {
-        self.chain.water.is_some()
+        self.chain.water.is_some() || self.load.is_some()
     }
 
     fn error_size(&self, e: &[f64], mass_e: &[f64]) -> f64 {

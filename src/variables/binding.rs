@@ -52,6 +52,8 @@ pub(super) fn output(quantity: Output, o: &Outputs, ned: bool) -> Value {
         LoadVelocity(c) => component(&o.load.velocity, c),
         LoadTension => real(o.load.tension),
         LoadAngle => real(o.load.angle),
+        FarEndForce(c) => component(&o.far_end.force, c),
+        FarEndTension => real(o.far_end.tension),
         StatusCode => Value::Integer(o.status.code),
         StatusMessage => Value::String(o.status.message.clone()),
         SolverSteps => count(o.solver.steps),

@@ -138,6 +138,7 @@ fn shape(scene: &Scene) -> Shape {
         body: scene.body.is_some(),
         body_force: scene.body.as_ref().is_some_and(|b| b.force_input),
         load: scene.load.is_some(),
+        far_end: scene.far_end.is_some(),
         points: scene.points,
     }
 }

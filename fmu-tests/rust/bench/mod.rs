@@ -118,7 +118,7 @@ pub fn at_rest(scene: &Scene, force: [f64; 3]) -> (System, Vec<f64>) {
 /// The equilibrium of a system that has been changed by hand.
 pub fn settled(system: &mut System, scene: &Scene, force: [f64; 3]) -> Vec<f64> {
     system.body_force = force.map(|value| Ramp { value, rate: 0.0 });
-    let load = (system.cable_mass() + system.lump.mass) * scene.gravity + Vector3::from(force).norm();
+    let load = (system.cable_mass() + system.end_mass()) * scene.gravity + Vector3::from(force).norm();
     let mut u = equilibrium::lay_out(system, 0.0, &-Vector3::z()).expect("a shape");
     equilibrium::solve(system, 0.0, &mut u, load).expect("an equilibrium");
     u
@@ -176,9 +176,12 @@ pub fn frequencies(system: &mut System, u: &[f64], axis: usize, held_end: bool) 
     let zero = vec![0.0; n];
     let (mut m, mut f) = (Matrices::zeros(n / 6), zero.clone());
     system.linearize(0.0, u, &zero, &zero, &mut m, &mut f);
-    let rows: Vec<usize> = (0..n).filter(|i| i % 3 == axis && *i >= 3 && !(held_end && *i == n - 6 + axis)).collect();
+    let stiffness = dense(&m.stiffness);
+    // Prescribed rows, and the slots of a load without use, have no stiffness.
+    let held = |i: usize| held_end && i == n - 6 + axis;
+    let rows: Vec<usize> = (0..n).filter(|i| i % 3 == axis && stiffness[(*i, *i)] != 0.0 && !held(*i)).collect();
     let pick = |m: &DMatrix<f64>| DMatrix::from_fn(rows.len(), rows.len(), |i, j| m[(rows[i], rows[j])]);
-    let (k, m) = (pick(&dense(&m.stiffness)), pick(&dense(&m.mass)));
+    let (k, m) = (pick(&stiffness), pick(&dense(&m.mass)));
     let l = k.cholesky().expect("a stable shape").l();
     let half = l.solve_lower_triangular(&m).expect("regular");
     let whole = l.solve_lower_triangular(&half.transpose()).expect("regular");
