@@ -343,9 +343,8 @@ impl Simulation {
             let s = &mut self.state;
             let k = &mut self.work;
             let remaining = end - s.time;
-            // Equal parts of what remains, none longer than the error control wants (a tenth more spares many a part and stays within the
-            // controller's margin).
-            let parts = (remaining / (1.1 * s.step.min(solver.step_max))).ceil().max(1.0);
+            // Equal parts of what remains, none longer than the error control wants (a hundredth more saves a sliver).
+            let parts = (remaining / (1.01 * s.step.min(solver.step_max))).ceil().max(1.0);
             let mut h = remaining / parts;
             self.system.linearize(s.time, &s.u, &s.w, &s.a, &mut k.matrices, &mut k.force);
             s.ledger.reach(&self.system.tally, &s.w, &k.force);

@@ -189,7 +189,7 @@ fn exact_small_swings_are_those_of_the_double_pendulum() {
     for (load, l) in [(THESIS, 0.5), (THESIS, 0.02), (Hung { gravity: 0.1, ..THESIS }, 0.5), (Hung { gravity: 0.269, ..THESIS }, 0.5)] {
         let wire = Wire { length: l, ..THREAD };
         let (mut system, u) = at_rest(&wire.scene(2, &[ANCHOR, &load.table()].concat()), [0.0; 3]);
-        let w = frequencies(&mut system, &u, 0);
+        let w = frequencies(&mut system, &u, 0, false);
         // ω⁴ (1 − a²)... : det(g diag(l, L_PG) − ω² [[l², l L_PG], [l L_PG, L_PI²]]) = 0.
         let (i2, c) = (load.inertia.powi(2), load.gravity);
         let (p, q, r) = (i2 - c * c, -G * (i2 / l + c), G * G * c / l);
@@ -496,7 +496,7 @@ fn exact_frequencies_of_a_string_between_two_ends() {
     let mut system = System::new(&scene);
     let mut u = fairlead::equilibrium::lay_between(&system, 0.0, &-Vector3::z()).expect("in reach");
     fairlead::equilibrium::solve(&mut system, 0.0, &mut u, 50.0).expect("an equilibrium");
-    let w = frequencies(&mut system, &u, 0);
+    let w = frequencies(&mut system, &u, 0, false);
     let (stretch, tension) = (2.01 / 2.0, wire.ea * 0.005);
     for n in 1..=4 {
         let exact = f64::from(n) * PI / wire.length * (tension / (stretch * wire.mass_per_length)).sqrt();

@@ -91,12 +91,14 @@ impl Touch<'_> {
             } else {
                 b = x;
             }
-            let newton = x - f / slope;
-            let next = if newton > a.min(b) && newton < a.max(b) { newton } else { 0.5 * (a + b) };
-            let done = (next - x).abs() < 1e-9;
-            x = next;
-            if done {
-                // Quadratic convergence: the last step has squared what this one left.
+            let step = f / slope;
+            if step.abs() < 1e-9 {
+                // Converging quadratically: this step leaves its square.
+                return (x - step).clamp(a.min(b) - 1e-9, a.max(b) + 1e-9);
+            }
+            let newton = x - step;
+            x = if newton > a.min(b) && newton < a.max(b) { newton } else { 0.5 * (a + b) };
+            if (b - a).abs() < 1e-15 {
                 break;
             }
         }

@@ -30,6 +30,8 @@ const NEAR: f64 = 0.2;
 const TOLERANCE: f64 = 1e-10;
 /// Rounding of a slope over the ratio of cable to element length, with room for sums of several terms.
 const ROUNDING: f64 = 2e-15;
+/// Iterations from a balanced state on.
+const POLISH: usize = 8;
 /// Factor by which the residual may grow in an accepted iteration.
 const GROWTH: f64 = 2.0;
 /// EA over all that acts in the first round, and the factor between rounds.
@@ -104,6 +106,7 @@ fn iterate(system: &mut System, t: f64, u: &mut [f64], load: f64, tolerance: f64
     let small = (tolerance * load).max(ROUNDING * finest * system.chain.section.ea);
     let mut delta = 1e-2;
     let mut worst = f64::INFINITY;
+    let (mut best, mut least, mut polished) = (zero.clone(), f64::INFINITY, 0);
     for iteration in 0..iterations {
         system.linearize(t, u, &zero, &zero, &mut m, &mut f);
         worst = size(&f);
@@ -131,9 +134,17 @@ fn iterate(system: &mut System, t: f64, u: &mut [f64], load: f64, tolerance: f64
                         u.copy_from_slice(&trial);
                         let ratio = (worst / after).clamp(0.7, 2.0);
                         delta = (delta * if scale < 1.0 { 1.05 } else { 2.0 * ratio }).min(1e7);
-                        // From a balanced state on until rounding stops the fall: the last digits of what little force moves.
-                        if after <= small && worst <= small && after > 0.3 * worst {
-                            return Ok(iteration + 1);
+                        if after <= small {
+                            // A few more give the last digits of what little force moves; rounding decides which is the best of them.
+                            if after < least {
+                                least = after;
+                                best.copy_from_slice(u);
+                            }
+                            polished += 1;
+                            if tolerance >= COARSE || polished > POLISH {
+                                u.copy_from_slice(&best);
+                                return Ok(iteration + 1);
+                            }
                         }
                         accepted = true;
                         break;
