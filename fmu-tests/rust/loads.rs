@@ -185,6 +185,33 @@ fn exact_tangents_of_the_load_and_the_fixed_end() {
 }
 
 #[test]
+fn exact_kinetic_energy_and_its_rate_by_turning_agree() {
+    // The ledger's kinetic energy ½ wᵀMw − w_N·(Mw)_N changes at constant w by what the tally calls turning. All under water, and at the surface.
+    let wire = Wire { length: 20.0, diameter: 0.1, mass_per_length: 8.0, ..THREAD };
+    for (level, bound) in [(50.0, 1e-8), (-6.0, 1e-6)] {
+        let water = format!(
+            "[fluid]\ndensity = 1025\nwaterline = {level:?}\ndrag = {{ law = \"cross_flow\", cd_normal = 1, cd_tangential = 0 }}\n"
+        );
+        let scene = wire.scene(3, &[ANCHOR, &water, "[far_end]\nposition = [9, 1, -9]\n"].concat());
+        let mut system = System::new(&scene);
+        let straight: Vec<f64> = system.arc.iter().flat_map(|s| [0.5 * s, 0.05 * s, -0.5 * s, 0.5, 0.05, -0.5]).collect();
+        let (u, w) = (ruffled(&straight, 0.4, 0.1), ruffled(&vec![0.0; straight.len()], 0.9, 1.0));
+        let mut f = vec![0.0; u.len()];
+        let mut tally = |t: f64| {
+            let u: Vec<f64> = u.iter().zip(&w).map(|(u, w)| u + t * w).collect();
+            system.force(0.0, &u, &w, None, &mut f);
+            system.tally
+        };
+        let h = 1e-5;
+        let (by_difference, turning) = ((tally(h).kinetic - tally(-h).kinetic) / (2.0 * h), tally(0.0).turning);
+        let error = by_difference / turning - 1.0;
+        println!("waterline {level} m: d(kinetic)/dt {by_difference:.6} W, turning {turning:.6} W ({error:.1e})");
+        // Differences: rounding 1e-16/1e-5 of the energy and h². At the surface the quadrature's pieces move as well.
+        assert!(error.abs() < bound, "{error:e}");
+    }
+}
+
+#[test]
 fn exact_small_swings_are_those_of_the_double_pendulum() {
     for (load, l) in [(THESIS, 0.5), (THESIS, 0.02), (Hung { gravity: 0.1, ..THESIS }, 0.5), (Hung { gravity: 0.269, ..THESIS }, 0.5)] {
         let wire = Wire { length: l, ..THREAD };
@@ -662,6 +689,9 @@ fn exact_a_start_under_way_has_no_shock() {
     shifted.initialize(0.0, &inputs(0.5)).expect("a start state");
     let by_statics = (shifted.outputs().cable.tension_max / first - 1.0).abs();
     println!("start at 2 m/s: tension changes by {most:.2e} within 0.5 s, by {by_statics:.2e} in statics");
+    // In water too the start is that of a ship at rest: nothing is towed.
+    let wet = HEAVY_WIRE.scene(20, &[&rest, WATER].concat());
+    assert_eq!(started(&wet, &inputs(0.0)).shape(), started(&wet, &Inputs::default()).shape());
     // v √(EA m) = 6 kN would be ten times the tension.
     assert!(most < 3.0 * by_statics + 0.02, "{most:e} {by_statics:e}");
 }

@@ -202,7 +202,7 @@ pub static GROUPS: &[Group] = &[
     group("anchor", Optional, false, "A fixed point of the ship at the cable's first end, instead of a winch"),
     group("sheave", Optional, true, "Sheaves, in the order in which the cable passes them"),
     group("body", Optional, false, "A lump at the cable's far end"),
-    group("load", Optional, false, "A rigid link hanging from the cable's far end"),
+    group("load", Optional, false, "A rigid link hanging from the cable's far end, with weight and inertia; water does not act on it"),
     group("far_end", Optional, false, "A fixed far end"),
     group("initial", IMPLIED, false, "How a run starts"),
     group("solver", IMPLIED, false, "Numerical settings"),
