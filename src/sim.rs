@@ -75,6 +75,8 @@ struct State {
     a: Vec<f64>,
     /// Sub-step that the error control would take next, s.
     step: f64,
+    /// Length and error of the last accepted sub-step.
+    last: [f64; 2],
     /// Tension by which errors are measured, N.
     tension: f64,
     /// Drum angle at the start, rad.
@@ -101,6 +103,12 @@ impl Simulation {
     pub fn new(scene: &Scene) -> Result<Self, SimError> {
         if scene.winch.as_ref().is_some_and(|w| w.setpoint != crate::scene::Setpoint::External) {
             return Err(SimError::Start("[winch] setpoint other than \"external\" is not supported by this version".into()));
+        }
+        if let Some(s) = scene.sheaves.iter().find(|s| s.inertia.is_some()) {
+            return Err(SimError::Start(format!(
+                "sheave \"{}\": a sheave that turns ([[sheave]] inertia) is not supported by this version; without it the sheave stands still",
+                s.name
+            )));
         }
         let mut system = System::new(scene);
         let (n, nodes) = (system.size(), system.nodes());
@@ -214,6 +222,7 @@ impl Simulation {
         self.state.tension = weight.max(self.outputs.cable.tension_max);
         self.system.set_tolerance(STRICTNESS * self.scene.solver.tolerance, self.state.tension);
         self.state.step = self.first_step();
+        self.state.last = [0.0; 2];
         self.state.ledger = Ledger::start(&self.system.tally, self.state.tension * self.scene.cable.diameter);
         self.outputs.solver = Default::default();
         self.outputs.status = Default::default();
@@ -359,7 +368,12 @@ impl Simulation {
                 };
                 let factor = (0.85 * error.powf(-1.0 / Rodas4::ESTIMATE_ORDER as f64)).clamp(0.2, 5.0);
                 if error <= 1.0 {
-                    let wanted = h * factor;
+                    // Gustafsson's predictive control (Hairer & Wanner, IV.8): what the error did last it will do again.
+                    let [h0, e0] = s.last;
+                    let predicted =
+                        if h0 > 0.0 { factor * h / h0 * (e0 / error).powf(1.0 / Rodas4::ESTIMATE_ORDER as f64) } else { factor };
+                    s.last = [h, error.max(1e-2)];
+                    let wanted = h * factor.min(predicted.max(0.2));
                     // A step cut short by the communication point says nothing against longer ones.
                     s.step = if h < s.step { wanted.max(s.step) } else { wanted };
                     break;
@@ -491,7 +505,8 @@ impl Simulation {
     /// Every number of the state and of the outputs, in a fixed order.
     fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
         let s = &mut self.state;
-        for x in [&mut s.time, &mut s.step, &mut s.tension, &mut s.first_angle] {
+        let [h, error] = &mut s.last;
+        for x in [&mut s.time, &mut s.step, h, error, &mut s.tension, &mut s.first_angle] {
             visit(x);
         }
         s.u.iter_mut().chain(&mut s.w).chain(&mut s.a).for_each(&mut *visit);
@@ -515,7 +530,7 @@ impl State {
         self.u.copy_from_slice(&o.u);
         self.w.copy_from_slice(&o.w);
         self.a.copy_from_slice(&o.a);
-        (self.time, self.step, self.tension, self.first_angle) = (o.time, o.step, o.tension, o.first_angle);
+        (self.time, self.step, self.last, self.tension, self.first_angle) = (o.time, o.step, o.last, o.tension, o.first_angle);
         (self.counts, self.ledger) = (o.counts, o.ledger);
     }
 }

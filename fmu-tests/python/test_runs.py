@@ -369,7 +369,6 @@ def test_exact_every_scene_runs(fmus, name):
     assert all(row["cable.tension_max"] >= row["cable.tension_min"] for row in rows)
 
 
-@pytest.mark.xfail(strict=True, reason="the static solver does not find the rest of a cable that only the current holds taut")
 def test_exact_a_cable_without_a_body_finds_its_rest(xtask, tmp_path):
     s = scenes.flume()
     del s["body"]

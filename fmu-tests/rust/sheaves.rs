@@ -297,3 +297,18 @@ fn exact_capstan_ratio_while_sliding() {
         assert!((ratio.abs() - mu * turn).exp_m1().abs() < 1e-2);
     }
 }
+
+#[test]
+fn exact_impossible_starts_name_the_sheave_and_the_numbers() {
+    let start = |text: &str, length: f64| {
+        let scene = Wire { length, ..ROPE }.scene(8, text);
+        Simulation::new(&scene).and_then(|mut s| s.initialize(0.0, &Inputs::default())).expect_err("no such start").to_string()
+    };
+    let body = "[body]\nmass = 1\n";
+    let inside = start(&format!("[anchor]\nposition = [0.01, 0, 0]\n{}{body}", sheave(None, "name = \"stern\"")), 1.0);
+    assert!(inside.contains("stern") && inside.contains("inside") && inside.contains("0.0400 m"), "{inside}");
+    let short = start(&format!("[anchor]\nposition = [-3, 0, 0.05]\n{}{body}", sheave(None, "name = \"stern\"")), 1.0);
+    assert!(short.contains("stern") && short.contains("cannot reach") && short.contains("1 m"), "{short}");
+    let turning = start(&format!("[anchor]\nposition = [-0.3, 0, 0.05]\n{}{body}", sheave(None, "name = \"stern\"\ninertia = 0.1")), 1.0);
+    assert!(turning.contains("stern") && turning.contains("inertia"), "{turning}");
+}

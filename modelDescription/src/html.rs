@@ -53,7 +53,9 @@ const CONTENTS: &str = "<p><a href=\"#model\">Model</a> &middot; <a href=\"#fram
 const MODEL: &str = "<h2 id=\"model\">Model</h2>
 <p>The cable is a chain of gradient-deficient elements of the absolute nodal coordinate formulation (Gerstmayr and Shabana 2006): geometrically
 exact stretching and bending, no torsion. Water acts by buoyancy, drag, added mass and current on the submerged part only. Contact with drums and
-sheaves is a line contact after Hunt and Crossley. The cable's first node is driven exactly along the winch drum, or fixed at an anchor.</p>
+sheaves is a line contact after Hunt and Crossley, integrated over the arcs that touch. A V groove has two flanks; their force fades over the last
+tenth of the groove's depth, and beside the rim, so that a cable can climb out and is then free. Friction on a sheave is Coulomb's, fading below a
+slip of 1 mm/s. The cable's first node is driven exactly along the winch drum, or fixed at an anchor.</p>
 <p>Tensions are the section's axial force. <code>winch.tension</code>, <code>tension_in</code> and <code>tension_out</code> are the pull of the free
 span, N + &frac12;EI&kappa;&sup2; at the end of the contact arc. In water all of them are effective tensions.</p>
 ";
@@ -75,7 +77,9 @@ time derivatives of these three angles, not body rates. Velocities and accelerat
 &ldquo;up&rdquo;: the ship's upward direction made normal to the axis (the ship's x where the axis is vertical). <code>winch.payout</code> is
 the length paid out since the start; with <code>winch.direction</code> = -1 the cable leaves the drum towards negative angles, so that a decreasing
 angle pays out. <code>contact_begin</code> and <code>contact_end</code> bound the contact arc, <code>wrap_angle</code> is their difference,
-<code>turn_angle</code> what the cable turns between the free spans. Groove flank 1 is the one whose normal points along the axis.</p>
+<code>turn_angle</code> what the cable turns between the free spans (their directions taken three bending lengths
+&radic;(EI/T), or an element's length, beyond the arc). <code>line_load_min</code> is the least load away from the arc's ends, where every load begins
+at nothing. Groove flank 1 is the one whose normal points along the axis.</p>
 ";
 
 const STEPS: &str = "<h2 id=\"steps\">Communication steps</h2>

@@ -270,6 +270,16 @@ fn exact_problems_name_key_value_and_expectation() {
             "[[sheave]]\nposition = [0, 0, 0]\naxis = [0, 1, 0]\nradius = -1\nstiffness = 1\n[mesh]",
             "s.toml: sheave[1].radius: found -1.0; expected a number > 0 in m",
         ),
+        (
+            "[mesh]",
+            "[[sheave]]\nname = \"stern\"\nposition = [0, 0, 0]\naxis = [0, 1, 0]\nradius = 1\nstiffness = 1\ngroove_angle = 0.8\ngroove_depth = 0.001\n[mesh]",
+            "s.toml: sheave[1].groove_depth: the groove of sheave \"stern\" opens to 8.4559e-4 m at its depth of 0.001 m and angle of 0.8 rad, narrower than the cable; expected at least cable.diameter = 0.01 m",
+        ),
+        (
+            "[mesh]",
+            "[[sheave]]\nname = \"a\"\nposition = [0, 0, 0]\naxis = [0, 1, 0]\nradius = 1\nstiffness = 1\n[[sheave]]\nname = \"b\"\nposition = [0.5, 0, 0]\naxis = [0, -2, 0]\nradius = 0.2\nstiffness = 1\n[mesh]",
+            "s.toml: sheave[2].position: \"b\" (radius 0.2 m) and \"a\" (radius 1 m) lie inside each other: their axes are 0.5000 m apart; expected at least 1.2000 m",
+        ),
         ("[mesh]", "[ship]\ninput = \"pose\"\n[mesh]\nelemnts = 2", "s.toml: mesh.elemnts: unknown key; did you mean mesh.elements?"),
     ];
     for (old, new, expected) in cases {
