@@ -10,7 +10,12 @@ pub struct BuiltIn {
 }
 
 /// All built-in scenes; the first is what the library simulates without resources.
-pub static SCENES: &[BuiltIn] = &[BuiltIn { name: "flume", text: include_str!("../scenes/flume.toml") }];
+pub static SCENES: &[BuiltIn] = &[
+    BuiltIn { name: "flume", text: include_str!("../scenes/flume.toml") },
+    BuiltIn { name: "pulley_1", text: include_str!("../scenes/pulley_1.toml") },
+    BuiltIn { name: "pulley_2", text: include_str!("../scenes/pulley_2.toml") },
+    BuiltIn { name: "pulley_3", text: include_str!("../scenes/pulley_3.toml") },
+];
 
 /// The built-in scene of that name.
 pub fn named(name: &str) -> Option<&'static BuiltIn> {
