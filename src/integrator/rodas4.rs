@@ -11,7 +11,7 @@
 //! extra terms −(M(u_i) − M) a_i, with increments A_i = W_i/g − a_i − Σ c_ij W_j / h.
 
 use super::{Problem, Trial};
-use crate::linalg::BlockTridiagonal;
+use crate::linalg::{BlockTridiagonal, Columns};
 use crate::math::lanes::{Kernel, widest};
 use crate::system::Matrices;
 
@@ -43,6 +43,9 @@ const C: [&[f64]; STAGES] = [
 #[derive(Clone, Debug, Default)]
 pub struct Rodas4 {
     factors: BlockTridiagonal,
+    /// K and M for the stages' products.
+    stiffness: Columns,
+    mass: Columns,
     /// P_i, W_i, A_i.
     p: Vec<Vec<f64>>,
     w: Vec<Vec<f64>>,
@@ -65,6 +68,8 @@ impl Rodas4 {
         let zeros = || vec![vec![0.0; size]; STAGES];
         Self {
             factors: BlockTridiagonal::zeros(size / 6),
+            stiffness: Columns::zeros(size / 6),
+            mass: Columns::zeros(size / 6),
             p: zeros(),
             w: zeros(),
             a: zeros(),
@@ -84,6 +89,8 @@ impl Rodas4 {
         if let Err(e) = self.factors.factor() {
             return Trial::Singular(e.row);
         }
+        self.stiffness.take(&m.stiffness);
+        self.mass.take(&m.mass);
         let varies = problem.mass_varies();
         let driven = problem.time_derivative(t, h, u0, w0, force, &mut self.rate);
         for i in 0..STAGES {
@@ -100,13 +107,13 @@ impl Rodas4 {
             // s_i, then −g K s_i.
             blend(&mut self.shift, Some(&self.stage[1]), 1.0 / h, C[i], &self.p);
             blend(&mut self.scratch, None, 1.0 / h, C[i], &self.w);
-            m.stiffness.multiply_add(-g, &self.shift, &mut self.rhs);
+            self.stiffness.multiply_add(-g, &self.shift, &mut self.rhs);
             // M (Σ c_ij W_j / h + a_i).
             if varies {
                 add(&mut self.scratch, 1.0, &self.stage[2]);
             }
             if i > 0 {
-                m.mass.multiply_add(1.0, &self.scratch, &mut self.rhs);
+                self.mass.multiply_add(1.0, &self.scratch, &mut self.rhs);
             }
             let w = &mut self.w[i];
             for (w, r) in w.iter_mut().zip(&self.rhs) {
@@ -130,7 +137,7 @@ impl Rodas4 {
             add(&mut self.stage[2], 1.0, &self.a[STAGES - 1]);
         }
         self.scratch.fill(0.0);
-        m.mass.multiply_add(1.0, &self.w[STAGES - 1], &mut self.scratch);
+        self.mass.multiply_add(1.0, &self.w[STAGES - 1], &mut self.scratch);
         let finite = self.stage[0].iter().chain(&self.stage[1]).all(|x| x.is_finite());
         Trial::Error(if finite { problem.error_size(&self.w[STAGES - 1], &self.scratch) } else { f64::NAN })
     }

@@ -1,5 +1,7 @@
 //! Block-tridiagonal matrices of 6×6 blocks; knows no cable.
 
 mod block_tridiagonal;
+mod columns;
 
 pub use block_tridiagonal::{BLOCK, Block, BlockTridiagonal, SingularBlock};
+pub use columns::Columns;
