@@ -22,6 +22,8 @@ pub fn observe(system: &System, env: &Environment, u: &[f64], w: &[f64], f: &[f6
         force += f;
         moment += Vector3::from(*at).cross(f) + about_it;
     };
+    // Where the cable leaves what it touched last.
+    let mut leaving = 0.0;
     match &system.first {
         FirstEnd::Winch { geometry, drive, contact, .. } => {
             // The pin's part less the contact on the cable.
@@ -30,7 +32,6 @@ pub fn observe(system: &System, env: &Environment, u: &[f64], w: &[f64], f: &[f6
             let clamp = slope.cross(&Vector3::from(system.clamp_force));
             let arm = Vector3::from(env.frame.locate(&base.into())) - Vector3::from(geometry.centre);
             about_centre += arm.cross(&on_drum) - to_ship(&clamp);
-            let mut leaving = 0.0;
             if *contact {
                 let load = &system.surface_loads[0];
                 on_drum -= sheave::to_ship(&system.surfaces[0], &load.force);
@@ -53,14 +54,14 @@ pub fn observe(system: &System, env: &Environment, u: &[f64], w: &[f64], f: &[f6
     }
     let first = system.surfaces.len() - out.sheaves.len();
     let end = system.arc[last + 1];
-    for i in 0..out.sheaves.len() {
-        let before = (first + i).checked_sub(1).and_then(|k| sheave::contact_arc(system, env, u, k)).map_or(0.0, |a| a.1);
-        let after = (first + i + 1 < system.surfaces.len())
-            .then(|| sheave::contact_arc(system, env, u, first + i + 1))
-            .flatten()
-            .map_or(end, |a| a.0);
-        sheave::sheave(system, env, u, w, first + i, (before, after), &mut out.sheaves[i]);
-        act(&system.surfaces[first + i].centre, &out.sheaves[i].force, &out.sheaves[i].moment);
+    let arc = |k: usize| (k < system.surfaces.len()).then(|| sheave::contact_arc(system, env, u, k)).flatten();
+    let mut here = arc(first);
+    for (i, sheave) in out.sheaves.iter_mut().enumerate() {
+        let next = arc(first + i + 1);
+        sheave::sheave(system, env, u, w, first + i, here, (leaving, next.map_or(end, |a| a.0)), sheave);
+        act(&system.surfaces[first + i].centre, &sheave.force, &sheave.moment);
+        leaving = here.map_or(leaving, |a| a.1);
+        here = next;
     }
     out.ship.force = force;
     out.ship.force_world = Vector3::from(env.frame.to_world(&force.into()));

@@ -46,8 +46,18 @@ pub fn contact_arc(system: &System, env: &Environment, u: &[f64], index: usize) 
     arc
 }
 
-/// Fills `out` for the sheave that is surface `index`; `neighbours` are the contact arcs before and after it on the cable (or its ends).
-pub fn sheave(system: &System, env: &Environment, u: &[f64], w: &[f64], index: usize, neighbours: (f64, f64), out: &mut SheaveOutputs) {
+/// Fills `out` for the sheave that is surface `index` and touched along `arc`; `neighbours` are where contact ends before it and begins after
+/// it (or the cable's ends).
+pub fn sheave(
+    system: &System,
+    env: &Environment,
+    u: &[f64],
+    w: &[f64],
+    index: usize,
+    arc: Option<(f64, f64)>,
+    neighbours: (f64, f64),
+    out: &mut SheaveOutputs,
+) {
     let surface = &system.surfaces[index];
     let load = &system.surface_loads[index];
     let force = -to_ship(surface, &load.force);
@@ -60,20 +70,15 @@ pub fn sheave(system: &System, env: &Environment, u: &[f64], w: &[f64], index: u
     };
     let frame = SurfaceFrame::new(surface, env, true);
     out.out_of_groove = climbed_out(system, surface, &frame, u);
-    let Some((begin, end)) = contact_arc(system, env, u, index) else { return };
+    let Some((begin, end)) = arc else { return };
     out.in_contact = true;
     out.tension_in = span_tension(system, u, w, begin);
     out.tension_out = span_tension(system, u, w, end);
-    let at = |s: f64| {
-        let (e, x) = system.element_at(s);
-        let l = system.chain.lengths[e];
-        (frame.shape(&gather(u, e), l).1, x, l)
-    };
     // Angles, followed along the arc so that more than half a turn is counted right.
     let angle = |p: &Vec3<f64>| p[2].atan2(p[1]);
     let place = |s: f64| {
-        let (curve, x, _) = at(s);
-        curve.at(x)
+        let (e, x) = system.element_at(s);
+        frame.shape(&gather(u, e), system.chain.lengths[e]).1.at(x)
     };
     let follow = |from: f64, to: f64, direction: &dyn Fn(f64) -> Vec3<f64>| {
         let elements = system.element_at(to).0 - system.element_at(from).0 + 1;
