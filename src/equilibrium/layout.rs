@@ -157,12 +157,11 @@ impl Way {
             pieces.push(Piece { begin: s, come: s + span, from: at, wheel: *w });
             s += span + w.arc();
             at = w.point(w.from + w.sense * w.turn());
-            if s > length {
-                let name =
-                    (k + 1).checked_sub(1 + usize::from(drum)).map_or("the drum".into(), |i| format!("sheave \"{}\"", system.names[i]));
-                if !(k == 0 && drum) {
-                    return Err(format!("the cable of {length} m cannot reach beyond {name}: the way there is {s:.4} m long"));
-                }
+            // A cable may end on the drum, not before a sheave.
+            if let Some(name) = k.checked_sub(usize::from(drum)).map(|i| &system.names[i])
+                && s > length
+            {
+                return Err(format!("the cable of {length} m cannot reach beyond sheave \"{name}\": the way there is {s:.4} m long"));
             }
         }
         Ok(Self { pieces, rotation, first, last: at, arc: s })

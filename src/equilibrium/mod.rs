@@ -7,9 +7,11 @@
 //! A cable much stiffer than its load can hardly turn without a glimpse of enormous tension, so the first rounds are made with one that yields
 //! by percents; its shape is nearly right, and each stiffer one starts from the last.
 
+mod given;
 mod layout;
 mod span;
 
+pub use given::take_shape;
 pub use layout::lay_out;
 pub use span::{follow, glide, lay_between, meet};
 
