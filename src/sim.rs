@@ -73,6 +73,8 @@ struct State {
     u: Vec<f64>,
     w: Vec<f64>,
     a: Vec<f64>,
+    /// Axial forces, three per element, N.
+    n: Vec<f64>,
     /// Sub-step that the error control would take next, s.
     step: f64,
     /// Length and error of the last accepted sub-step.
@@ -122,7 +124,7 @@ impl Simulation {
             mass.factor().map_err(|e| SimError::Start(format!("the mass matrix is singular at node {}", e.row)))?;
             constant_mass = Some(mass);
         }
-        let state = State { u: zeros(), w: zeros(), a: zeros(), ..State::default() };
+        let state = State { u: zeros(), w: zeros(), a: zeros(), n: vec![0.0; 3 * scene.elements.len()], ..State::default() };
         Ok(Self {
             scene: scene.clone(),
             method: Rodas4::new(n),
@@ -146,6 +148,7 @@ impl Simulation {
     pub fn initialize(&mut self, time: f64, inputs: &Inputs) -> Result<(), SimError> {
         let scene = &self.scene;
         let system = &mut self.system;
+        system.keeps_axial = false;
         system.begin = time;
         system.ship.start(time, &inputs.ship);
         system.ship.advance(time, 1.0, &inputs.ship);
@@ -217,10 +220,12 @@ impl Simulation {
         state.step = self.scene.solver.step_max;
         self.system.set_tolerance(STRICTNESS * self.scene.solver.tolerance, self.state.tension);
         self.settle();
+        self.system.save_axial(&mut self.state.n);
         self.observe();
         // Errors are measured by the greater of weight and first tension.
         self.state.tension = weight.max(self.outputs.cable.tension_max);
         self.system.set_tolerance(STRICTNESS * self.scene.solver.tolerance, self.state.tension);
+        self.system.keeps_axial = true;
         self.state.step = self.first_step();
         self.state.last = [0.0; 2];
         self.state.ledger = Ledger::start(&self.system.tally, self.state.tension * self.scene.cable.diameter);
@@ -303,12 +308,14 @@ impl Simulation {
                 if let FirstEnd::Winch { drive, .. } = &mut self.system.first {
                     drive.commit(time);
                 }
+                self.system.save_axial(&mut self.state.n);
                 self.conclude();
                 self.observe();
                 Ok(())
             }
             Err(message) => {
                 self.state.copy(&self.backup);
+                self.system.restore_axial(&self.state.n);
                 self.system.ship = ship;
                 if let (FirstEnd::Winch { drive, .. }, Some(x)) = (&mut self.system.first, winch) {
                     drive.restore(begin, x);
@@ -399,6 +406,7 @@ impl Simulation {
                 mid_u[i] = 0.5 * (s.u[i] + u[i]) + h / 8.0 * (s.w[i] - w[i]);
                 mid_w[i] = 1.5 / h * (u[i] - s.u[i]) - 0.25 * (s.w[i] + w[i]);
             }
+            self.system.accept(u, w, &Rodas4::WEIGHTS);
             s.u.copy_from_slice(u);
             s.w.copy_from_slice(w);
             if self.system.mass_varies() {
@@ -494,6 +502,7 @@ impl Simulation {
         let mut numbers = bytes.chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().unwrap_or_default()));
         self.visit(&mut |x| *x = numbers.next().unwrap_or(f64::NAN));
         let t = self.state.time;
+        self.system.restore_axial(&self.state.n);
         if let FirstEnd::Winch { drive, .. } = &mut self.system.first {
             drive.restored(t);
         }
@@ -509,7 +518,7 @@ impl Simulation {
         for x in [&mut s.time, &mut s.step, h, error, &mut s.tension, &mut s.first_angle] {
             visit(x);
         }
-        s.u.iter_mut().chain(&mut s.w).chain(&mut s.a).for_each(&mut *visit);
+        s.u.iter_mut().chain(&mut s.w).chain(&mut s.a).chain(&mut s.n).for_each(&mut *visit);
         for c in &mut s.counts {
             let mut x = *c as f64;
             visit(&mut x);
@@ -530,6 +539,7 @@ impl State {
         self.u.copy_from_slice(&o.u);
         self.w.copy_from_slice(&o.w);
         self.a.copy_from_slice(&o.a);
+        self.n.copy_from_slice(&o.n);
         (self.time, self.step, self.last, self.tension, self.first_angle) = (o.time, o.step, o.last, o.tension, o.first_angle);
         (self.counts, self.ledger) = (o.counts, o.ledger);
     }

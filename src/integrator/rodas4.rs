@@ -61,6 +61,9 @@ pub struct Rodas4 {
 impl Rodas4 {
     /// Order of the solution.
     pub const ORDER: usize = 4;
+    /// Of the increments in the solution.
+    pub const WEIGHTS: [f64; STAGES] =
+        [1.221_224_509_226_641, 6.019_134_481_288_629, 12.537_083_329_320_87, -0.687_886_036_105_895, 1.0, 1.0];
     /// Order of the error estimate plus one: error ~ h^this.
     pub const ESTIMATE_ORDER: usize = 4;
 

@@ -14,8 +14,8 @@ mod points;
 mod wetting;
 
 pub use contact::SurfaceLoad;
+use elements::{Axial, Axially};
 pub use elements::{Chain, Tally, Wetness, gather};
-use elements::Axial;
 pub use environment::Environment;
 pub use far_end::FarEnd;
 pub use load::RigidLoad;
@@ -133,6 +133,8 @@ pub struct System {
     pub tally: Tally,
     /// Static evaluation: the boundary's velocity is seen by the water, its acceleration and the winch's rate are not.
     pub frozen: bool,
+    /// Whether a tangent begins a step: the axial forces are then unknowns of the state and no longer given by the shape alone.
+    pub keeps_axial: bool,
     gravity: f64,
     /// Tolerable velocity error in the mass norm, kg·m²/s².
     tolerance: f64,
@@ -190,6 +192,7 @@ impl System {
             clamp_force: [0.0; 3],
             tally: Tally::default(),
             frozen: false,
+            keeps_axial: false,
             gravity: scene.gravity,
             tolerance: 1.0,
             matrices: Matrices::default(),
@@ -276,11 +279,11 @@ impl System {
         u: &[f64],
         w: &[f64],
         a: Option<&[f64]>,
-        stage: Option<Stage>,
+        axially: Axially,
         f: &mut [f64],
         m: &mut Matrices,
     ) {
-        self.tally = self.chain.pass::<TANGENT>(env, u, w, a, stage, &mut self.axial, &mut self.forces, m);
+        self.tally = self.chain.pass::<TANGENT>(env, u, w, a, axially, &mut self.axial, &mut self.forces, m);
         if self.chain.water.is_some() {
             self.surface::<TANGENT>(env, u, w, a, m);
         }
@@ -432,10 +435,30 @@ impl System {
         }
     }
 
-    fn force_at(&mut self, stage: Option<Stage>, t: f64, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64]) {
+    /// The step that began with the last tangent ends at (u, w), of the stages' increments weighted so.
+    pub fn accept(&mut self, u: &[f64], w: &[f64], weights: &[f64]) {
+        self.chain.accept(u, w, weights, &mut self.axial);
+    }
+
+    /// Copies the state's axial forces, three per element (N), out of the system.
+    pub fn save_axial(&self, to: &mut [f64]) {
+        for (to, n) in to.iter_mut().zip(elements::axial_forces(&self.axial)) {
+            *to = *n;
+        }
+    }
+
+    /// Puts them back; they are then part of the state.
+    pub fn restore_axial(&mut self, from: &[f64]) {
+        self.keeps_axial = true;
+        for (n, from) in elements::axial_forces_mut(&mut self.axial).zip(from) {
+            *n = *from;
+        }
+    }
+
+    fn force_at(&mut self, axially: Axially, t: f64, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64]) {
         let env = self.environment(t);
         let mut none = std::mem::take(&mut self.matrices);
-        self.evaluate::<false>(&env, u, w, a, stage, f, &mut none);
+        self.evaluate::<false>(&env, u, w, a, axially, f, &mut none);
         self.matrices = none;
         f[..3].fill(0.0);
         self.drive_far_end(&env, a, f);
@@ -445,7 +468,7 @@ impl System {
     pub fn balance(&mut self, t: f64, u: &[f64], w: &[f64], a: &[f64], f: &mut [f64]) {
         let env = self.environment(t);
         let mut none = std::mem::take(&mut self.matrices);
-        self.evaluate::<false>(&env, u, w, Some(a), None, f, &mut none);
+        self.evaluate::<false>(&env, u, w, Some(a), Axially::Law, f, &mut none);
         self.matrices = none;
     }
 }
@@ -478,11 +501,11 @@ impl Problem for System {
     }
 
     fn force(&mut self, t: f64, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64]) {
-        self.force_at(None, t, u, w, a, f);
+        self.force_at(Axially::Law, t, u, w, a, f);
     }
 
     fn stage_force(&mut self, stage: Stage, t: f64, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64]) {
-        self.force_at(Some(stage), t, u, w, a, f);
+        self.force_at(Axially::Stage(stage), t, u, w, a, f);
     }
 
     fn linearize(&mut self, t: f64, u: &[f64], w: &[f64], a: &[f64], m: &mut Matrices, f: &mut [f64]) {
@@ -492,7 +515,7 @@ impl Problem for System {
         }
         // The tangent wants F − M(u) a, the caller F: add M a back.
         let varies = self.mass_varies();
-        self.evaluate::<true>(&env, u, w, varies.then_some(a), None, f, m);
+        self.evaluate::<true>(&env, u, w, varies.then_some(a), if self.keeps_axial { Axially::Begin } else { Axially::Law }, f, m);
         if varies {
             m.mass.multiply_add(1.0, a, f);
         }
