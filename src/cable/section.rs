@@ -172,14 +172,14 @@ impl Section {
     /// Resisting forces at a point; derivatives only with `TANGENT`.
     #[inline(always)]
     pub fn resistance<const TANGENT: bool>(&self, s: &Strains) -> Resistance {
-        self.resistance_held::<TANGENT>(s, 0.0)
+        self.resistance_carrying::<TANGENT>(s, 1.0, 0.0)
     }
 
-    /// The same, but the derivatives are those of a cable whose axial force is less by `held` (N) than its strain says.
+    /// The same, but the derivatives are those of a cable whose axial force is `share` of what the law gives and `other` (N).
     #[inline(always)]
-    pub fn resistance_held<const TANGENT: bool>(&self, s: &Strains, held: f64) -> Resistance {
+    pub fn resistance_carrying<const TANGENT: bool>(&self, s: &Strains, share: f64, other: f64) -> Resistance {
         let mut out = Resistance::zero();
-        self.axial::<TANGENT>(s, held, &mut out);
+        self.axial::<TANGENT>(s, share, other, &mut out);
         if self.bends() {
             self.bending::<TANGENT>(s, &mut out);
         }
@@ -189,7 +189,7 @@ impl Section {
 
     /// n = N g with g = ∂ε/∂r_p.
     #[inline(always)]
-    fn axial<const TANGENT: bool>(&self, s: &Strains, held: f64, out: &mut Resistance) {
+    fn axial<const TANGENT: bool>(&self, s: &Strains, share: f64, other: f64, out: &mut Resistance) {
         let l2 = dot(&s.p, &s.p);
         // g = r_p/λ or r_p; ∂g/∂r_p = c (I − b g gᵀ).
         let l = l2.sqrt();
@@ -209,7 +209,7 @@ impl Section {
         out.power += elastic * rate;
         if TANGENT {
             // K = g ⊗ ∂N/∂r_p + N ∂g/∂r_p.
-            let turn = (n - held) * c;
+            let turn = (share * n + other) * c;
             add_outer(&mut out.k_pp, 1.0, &g, &axpy(&out.by_p, -turn * b, &g));
             add_identity(&mut out.k_pp, turn);
         }

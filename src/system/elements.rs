@@ -368,14 +368,15 @@ impl Chain {
         if STAGE {
             axial.enter(stage.weights);
         }
+        let anew = if matches!(axially, Axially::Law) { 1.0 } else { 0.0 };
         for l in 0..LANES {
             let i = batch.inverse.0[l];
             let (u, w) = (spans(&batch.u, l), spans(&batch.w, l));
             let strains = Strains { p: along(&b, &u, i), pp: along(&d, &u, i * i), vp: along(&b, &w, i), vpp: along(&d, &w, i * i) };
+            let mut r = section.resistance_carrying::<TANGENT>(&strains, anew, if TANGENT { (1.0 - anew) * axial.now.0[l] } else { 0.0 });
             if TANGENT {
-                axial.begin(l, &section.resistance::<false>(&strains), &strains, matches!(axially, Axially::Law));
+                axial.begin(l, &r, &strains, anew);
             }
-            let mut r = section.resistance_held::<TANGENT>(&strains, if TANGENT { axial.held(l) } else { 0.0 });
             if STAGE {
                 r.n = axial.force(l, stage.index, &r, &strains);
             }

@@ -60,16 +60,10 @@ impl<const W: usize> AxialUnknown<W> {
         drift: Lanes::ZERO,
     };
 
-    /// Σ_0 − N_0 of element `l`, N.
+    /// A step begins with element `l` in the shape `s`, where the law gives `r`: with N = Σ if `anew` is 1, as it is if 0.
     #[inline(always)]
-    pub fn held(&self, l: usize) -> f64 {
-        self.gaps[0].0[l]
-    }
-
-    /// A step begins with element `l` in the shape `s`, where the law gives `r`; `anew`: with N = Σ.
-    #[inline(always)]
-    pub fn begin(&mut self, l: usize, r: &Resistance, s: &Strains, anew: bool) {
-        let now = if anew { r.axial } else { self.now.0[l] };
+    pub fn begin(&mut self, l: usize, r: &Resistance, s: &Strains, anew: f64) {
+        let now = anew * r.axial + (1.0 - anew) * self.now.0[l];
         self.now.0[l] = now;
         self.gaps[0].0[l] = r.axial - now;
         set_lane(&mut self.g, l, r.g);
