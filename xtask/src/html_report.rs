@@ -25,7 +25,9 @@ figure img{display:block;max-width:100%;height:auto;margin:auto}
 .wide{overflow-x:auto}
 .wide table{font-size:.84rem;min-width:100%}
 .wide th,.wide td{padding:.3rem .6rem}
-.wide td:first-child{min-width:22rem}
+.figures td:first-child{min-width:22rem}
+.roomy p{max-width:58rem}
+.roomy figcaption{max-width:58rem;text-align:center;margin:auto}
 td small{display:block;color:#5b6773;font-size:.92em;line-height:1.4}
 td.holds{color:#00704a;font-weight:600}
 td.missed{color:#b00020;font-weight:700}
@@ -121,9 +123,14 @@ impl Page {
         self.push(&format!("<ul>{}</ul>", items.join("")))
     }
 
-    /// A table of many columns in small type, which scrolls sideways on a narrow screen. The words of verdicts are coloured.
+    /// A table of many columns in small type, which scrolls sideways on a narrow screen.
     pub fn wide_table(&mut self, header: &[&str], rows: &[Vec<String>]) -> &mut Page {
         self.push("<div class=\"wide\">").table(header, rows).push("</div>")
+    }
+
+    /// The same with room for sentences in the first column.
+    pub fn figure_table(&mut self, header: &[&str], rows: &[Vec<String>]) -> &mut Page {
+        self.push("<div class=\"wide figures\">").table(header, rows).push("</div>")
     }
 
     /// A figure in a file beside the page.

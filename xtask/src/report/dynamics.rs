@@ -32,8 +32,7 @@ pub fn section(bench: &Bench) -> Result<Section> {
     let mut section = Section::new("Closed forms: motions")
         .text(
             "Frequencies are measured on the motion: the start shape is a mode of small amplitude, the period comes from the zero crossings of a \
-             point. Left out here: the folded falling chain and the higher modes, which the Rust tests hold by the eigenvalues of the linearized \
-             system (fmu-tests/rust/dynamics.rs).",
+             point.",
         )
         .rows(rows);
     for (file, chart, caption) in charts {

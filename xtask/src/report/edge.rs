@@ -17,19 +17,21 @@ struct Sweep {
 }
 
 impl Sweep {
-    /// Greatest difference over `k` steps.
-    fn step(&self, k: usize) -> f64 {
-        (k..self.force.len()).map(|i| (self.force[i] - self.force[i - k]).abs()).fold(0.0, f64::max)
+    /// Differences of neighbours.
+    fn steps(&self) -> Vec<f64> {
+        self.force.windows(2).map(|f| (f[1] - f[0]).abs()).collect()
     }
 
-    /// The steps of a continuous curve halve when the sweep is twice as fine, those of a jump do not.
+    /// A jump is a step that stands out from both of its neighbours; the steps of a continuous curve go over into each other.
     fn row(&self, what: &str) -> Row {
-        Row::absolute(Exact, format!("{what}: greatest step of every other sample over that of every sample"), self.step(2) / self.step(1), 2.0, "")
-            .within(0.05)
+        let steps = self.steps();
+        let greatest = steps.iter().fold(0.0, |m: f64, s| m.max(*s));
+        let needle = steps.windows(3).map(|s| s[1] - s[0].max(s[2])).fold(0.0, f64::max);
+        Row::error(Exact, format!("{what}: by how much a step stands out from both neighbours, over the greatest step"), needle / greatest, "")
+            .within(0.01)
             .must(Must::Sweep)
             .because(format!(
-                "2 for a continuous curve, 1 for a jump; the steps' own change from sample to sample is below 5 %. Greatest step {:.2e} N of {:.3} N",
-                self.step(1),
+                "a jump of J stands out by J; where a smooth slope has its summit, by its curvature: below 1 %. Greatest step {greatest:.2e} N of {:.3e} N",
                 self.force.iter().fold(0.0, |m: f64, f| m.max(*f))
             ))
     }
@@ -121,4 +123,22 @@ pub fn section(bench: &Bench) -> Result<Section> {
         .chart("edge-close-up", fine.chart("The kink, magnified 400 times", "Anchor lowered by, µm", &MICROMETRES), "The same over 40 µm: what looks like a kink is the Hunt-Crossley force setting in with its power 1.5.")
         .chart("edge-rim", rim.chart("Past a groove's rim", "Rope's height over the groove's root, mm", &MILLIMETRES), "Resultant and slope while the rope comes down past the rim at 12 mm (to be read from right to left).")
         .csv("edge-laid-on", "anchor_lowered_m,resultant_N", &[&coarse.position, &coarse.force], "the first sweep"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::row::Verdict;
+    use super::*;
+
+    #[test]
+    fn exact_a_jump_is_found_and_a_kink_is_none() {
+        let position: Vec<f64> = (0..200).map(|i| f64::from(i) * 1e-3).collect();
+        let sweep = |jump: f64| {
+            let force = position.iter().map(|x| (x - 0.05).max(0.0).powf(1.5) + if *x > 0.12 { jump } else { 0.0 }).collect();
+            Sweep { position: position.clone(), force }
+        };
+        assert_eq!(sweep(0.0).row("x").verdict(), Verdict::Holds);
+        let greatest = sweep(0.0).steps().into_iter().fold(0.0, f64::max);
+        assert_eq!(sweep(0.02 * greatest).row("x").verdict(), Verdict::Missed);
+    }
 }

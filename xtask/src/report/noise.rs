@@ -2,7 +2,7 @@
 
 use super::bench::{Bench, Drive, record};
 use super::flume::MEASURED;
-use super::numerics::{Ellipsoid, extremes};
+use super::numerics::Ellipsoid;
 use super::row::{Row, Truth::Paper, figure};
 use super::scene::Scene;
 use super::section::{Section, thinned};
@@ -28,14 +28,14 @@ pub fn section(bench: &Bench) -> Result<Section> {
             .text("The scene is not there yet; when it is, this section shows the ellipsoid of the body's trace over two minutes.")
             .rows(vec![row]));
     };
-    let run = record(&bench.pack(&scene)?, &Drive::still(STEP, END), ["body.x", "body.y", "body.z", "body.tension"])?;
+    let run = record(&bench.pack(&scene)?, &Drive::still(STEP, END), ["body.x", "body.y", "body.z"])?;
     let first = (SETTLING / STEP).round() as usize;
     let [x, y, z] = [0, 1, 2].map(|k| &run.columns[k][first..]);
     let trace: Vec<Vector3<f64>> = (0..x.len()).map(|i| Vector3::new(x[i], y[i], z[i])).collect();
     let whole = Ellipsoid::of(&trace);
     let halves = [Ellipsoid::of(&trace[..trace.len() / 2]), Ellipsoid::of(&trace[trace.len() / 2..])];
 
-    let mut rows: Vec<Row> = ["x", "y", "z"]
+    let rows: Vec<Row> = ["x", "y", "z"]
         .into_iter()
         .enumerate()
         .map(|(k, axis)| {
@@ -43,11 +43,6 @@ pub fn section(bench: &Bench) -> Result<Section> {
                 .because("measured centroid without motion, thesis 4.3.1; no bound: the mean flow alone is held against it in the section on the flume at rest")
         })
         .collect();
-    let [_, greatest] = extremes(&run.columns[3][first..]);
-    rows.push(
-        Row::absolute(Paper, "Greatest tension at the body", 1e3 * greatest, f64::NAN, "mN")
-            .because("not given in the thesis's part that we have"),
-    );
     let table = (0..3)
         .map(|k| {
             let a = whole.axes[k];

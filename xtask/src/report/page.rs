@@ -49,7 +49,12 @@ fn page(sections: &[Section]) -> String {
     page.paragraph(
         "Of the figures that belong to a line the one that uses most of its bound is shown; all of them are in the sections below.",
     );
-    page.wide_table(&["Line, and its worst figure", "Ours", "Reference", "Off by", "Bound", "Verdict"], &must_hold(sections));
+    page.figure_table(&["Line, and its worst figure", "Ours", "Reference", "Off by", "Bound", "Verdict"], &must_hold(sections));
+    page.paragraph(
+        "Left out: the folded falling chain of the closed forms, for a chain that folds at a point of no bending stiffness is at odds with any smooth \
+         element; higher modes, which the Rust tests hold by the eigenvalues of the linearized system (fmu-tests/rust/dynamics.rs); and the thesis's \
+         records over time, of which its text gives ranges only. Speed against error and hard cases are not in this part.",
+    );
     page.heading("Contents").list(&sections.iter().map(|s| (anchor(&s.title), s.title.clone())).collect::<Vec<_>>());
     for section in sections {
         page.anchored_heading(&anchor(&section.title), &section.title);
@@ -57,7 +62,7 @@ fn page(sections: &[Section]) -> String {
             match block {
                 Block::Text(text) => page.paragraph(text),
                 Block::Table(header, rows) => page.wide_table(&header.iter().map(String::as_str).collect::<Vec<_>>(), rows),
-                Block::Rows(rows) => page.wide_table(&HEADER, &figures(rows)),
+                Block::Rows(rows) => page.figure_table(&HEADER, &figures(rows)),
                 Block::Chart(file, chart, caption) => page.image(&format!("{file}.svg"), &chart.title, caption),
                 Block::Csv(file, _, what) => page.file(&format!("{file}.csv"), what),
             };

@@ -95,6 +95,7 @@ pub fn section(bench: &Bench) -> Result<Section> {
         convergence.push(errors_over_elements(&name, own, &MESHES, &of_meshes, colour));
         records.push((experiment.scene, own.record.clone()));
     }
+    let over = outweigh(&rows);
     let panels = vec![Panel::new("Rope's angle, °", angles).height(260.0), Panel::new("Tension at the load, N", tensions).height(260.0)];
     let study = Chart::new(
         "4.1: mesh study",
@@ -113,6 +114,7 @@ pub fn section(bench: &Bench) -> Result<Section> {
              scene files.",
         )
         .rows(rows)
+        .text(over)
         .chart("pulley", Chart::new("4.1: the swinging load", "Time, s", panels), "The rope's angle and the tension at the load over the first swing there and back, on the scenes' own meshes; dashed: measured extremes.")
         .text("Mesh study: the scene's own mesh is fine where the rope settles on the pulley; the others have equal elements. The last column is the greatest change of the four extremes against the scene's own mesh.")
         .table(&["Scene", "Elements", "Least angle, °", "Greatest angle, °", "Least tension, N", "Greatest tension, N", "Greatest change"], studies)
@@ -143,6 +145,19 @@ fn beside_measurements(experiment: &Experiment, own: &Outcome) -> Vec<Row> {
         }
     }
     rows
+}
+
+/// How the greatest tensions lie to the measured ones, in words.
+fn outweigh(rows: &[Row]) -> String {
+    let greatest = rows.iter().filter(|row| row.what.ends_with("greatest tension"));
+    let parts: Vec<String> = greatest
+        .map(|row| format!("{:+.0} % ({})", 100.0 * (row.measured / row.reference - 1.0), row.what.split(':').next().unwrap_or("")))
+        .collect();
+    format!(
+        "The greatest tension against the measured one: {}. All of it is frictionless here; what the pulley's bearing and the rope's own friction take \
+         in the experiment is not in the thesis's text.",
+        parts.join(", ")
+    )
 }
 
 /// Greatest relative change of the four extremes.
