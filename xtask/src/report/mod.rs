@@ -25,6 +25,7 @@ use crate::error::{Failure, Result};
 use crate::package::root;
 use bench::Bench;
 use indicatif::{ProgressBar, ProgressStyle};
+use row::{Row, Truth};
 use section::Section;
 use std::io::IsTerminal;
 use std::time::Instant;
@@ -78,7 +79,8 @@ pub fn run(args: Args) -> Result<()> {
             Some(bar) => bar.set_message(*name),
             None => println!("{} of {}: {name}", i + 1, chosen.len()),
         }
-        sections.push(make(&bench).map_err(|e| Failure(format!("report, section {name}: {e}")))?);
+        // One scene that does not run is a miss; it does not take the other sections with it.
+        sections.push(make(&bench).unwrap_or_else(|e| Section::new(name).rows(vec![Row::failed(Truth::Exact, "The section's scenes", e)])));
         if let Some(bar) = &bar {
             bar.inc(1);
         }

@@ -28,14 +28,15 @@ const EXPERIMENTS: [Experiment; 3] = [
 const END: f64 = 1.8;
 const STEP: f64 = 0.002;
 
-/// A mesh: equal elements, or the scene's own with that share of its elements.
+/// A mesh: equal elements, or the scene's own with that share of its elements; or the scene's own with a tenth of its tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Mesh {
     Equal(usize),
     Own(f64),
+    Tight,
 }
 
-const MESHES: [Mesh; 6] = [Mesh::Own(1.0), Mesh::Own(0.5), Mesh::Equal(10), Mesh::Equal(20), Mesh::Equal(40), Mesh::Equal(80)];
+const MESHES: [Mesh; 7] = [Mesh::Own(1.0), Mesh::Own(0.5), Mesh::Tight, Mesh::Equal(10), Mesh::Equal(20), Mesh::Equal(40), Mesh::Equal(80)];
 
 /// The time records and extremes of a configuration on a mesh: angle (deg), tension (N).
 struct Outcome {
@@ -49,6 +50,10 @@ fn swing(bench: &Bench, experiment: &Experiment, mesh: Mesh) -> Result<Outcome> 
     let scene = match mesh {
         Mesh::Equal(count) => scene.elements(count),
         Mesh::Own(share) => scene.refined(share),
+        Mesh::Tight => {
+            let tolerance = scene.number("solver.tolerance").unwrap_or(1e-3);
+            scene.with("solver.tolerance", 0.1 * tolerance)
+        }
     };
     let mut record = record(&bench.pack(&scene)?, &Drive::still(STEP, END), ["sheave[1].turn_angle", "load.tension"])?;
     record.columns[0] = scaled(&record.columns[0], 1f64.to_degrees());
@@ -116,7 +121,7 @@ pub fn section(bench: &Bench) -> Result<Section> {
         .rows(rows)
         .text(over)
         .chart("pulley", Chart::new("4.1: the swinging load", "Time, s", panels), "The rope's angle and the tension at the load over the first swing there and back, on the scenes' own meshes; dashed: measured extremes.")
-        .text("Mesh study: the scene's own mesh is fine where the rope settles on the pulley; the others have equal elements. The last column is the greatest change of the four extremes against the scene's own mesh.")
+        .text("Mesh study: the scene's own mesh is fine where the rope settles on the pulley; the others have equal elements; one run has a tenth of the tolerance in time. The last column is the greatest change of the four extremes against the scene's own mesh.")
         .table(&["Scene", "Elements", "Least angle, °", "Greatest angle, °", "Least tension, N", "Greatest tension, N", "Greatest change"], studies)
         .chart("pulley-mesh", study, "Greatest change of the four extremes, on meshes of equal elements, against the scene's own mesh of 100.");
     for (scene, record) in records {
@@ -176,6 +181,7 @@ fn study_row(experiment: &Experiment, mesh: Mesh, own: &Outcome, outcome: &Resul
         Mesh::Equal(count) => format!("{count} equal"),
         Mesh::Own(1.0) => format!("{}, the scene's", own.elements),
         Mesh::Own(_) => "half of each region".to_owned(),
+        Mesh::Tight => format!("{}, a tenth of the tolerance", own.elements),
     };
     let mut cells = vec![experiment.scene.to_owned(), name];
     match outcome {

@@ -107,13 +107,14 @@ fn static_hang(bench: &Bench, groove: Option<f64>) -> Result<Vec<Row>> {
 fn fleet(bench: &Bench) -> Result<Vec<Row>> {
     let angle = FRAC_PI_4;
     let mut rows = Vec::new();
-    for aside in [-0.02, 0.01, 0.03] {
+    for aside in [-0.02f64, 0.01, 0.03] {
         let sim = bench.rest(&hang(Some(angle), aside)?)?;
         // The rope hangs straight down on the other side: all pull along the axis comes from the anchor's side.
         let away = (Vector3::from(point(&sim, 201)?) - Vector3::from(point(&sim, 101)?)).normalize();
         let axial = -sim.get("sheave[1].tension_in")? * away.y;
         let difference = (sim.get("sheave[1].flank_force[2]")? - sim.get("sheave[1].flank_force[1]")?) * (0.5 * angle).cos();
-        let at = format!("Anchor {:.0} mm to port of the groove", 1e3 * aside);
+        let side = if aside > 0.0 { "port" } else { "starboard" };
+        let at = format!("Anchor {:.0} mm to {side} of the groove", 1e3 * aside.abs());
         for (what, found) in [("force along the axis", sim.get("sheave[1].force.y")?), ("by the flanks' difference", difference)] {
             rows.push(
                 Row::relative(Exact, format!("{at}: {what}"), found, axial, "N")
