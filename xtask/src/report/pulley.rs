@@ -159,8 +159,8 @@ fn outweigh(rows: &[Row]) -> String {
         .map(|row| format!("{:+.0} % ({})", 100.0 * (row.measured / row.reference - 1.0), row.what.split(':').next().unwrap_or("")))
         .collect();
     format!(
-        "The greatest tension against the measured one: {}. All of it is frictionless here; what the pulley's bearing and the rope's own friction take \
-         in the experiment is not in the thesis's text.",
+        "The greatest tension against the measured one: {}. The scenes have no friction and no contact damping; whether that is why has not been \
+         examined.",
         parts.join(", ")
     )
 }
