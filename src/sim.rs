@@ -106,12 +106,6 @@ impl Simulation {
         if scene.winch.as_ref().is_some_and(|w| w.setpoint != crate::scene::Setpoint::External) {
             return Err(SimError::Start("[winch] setpoint other than \"external\" is not supported by this version".into()));
         }
-        if let Some(s) = scene.sheaves.iter().find(|s| s.inertia.is_some()) {
-            return Err(SimError::Start(format!(
-                "sheave \"{}\": a sheave that turns ([[sheave]] inertia) is not supported by this version; without it the sheave stands still",
-                s.name
-            )));
-        }
         let mut system = System::new(scene);
         let (n, nodes) = (system.size(), system.nodes());
         let zeros = || vec![0.0; n];
@@ -178,7 +172,7 @@ impl Simulation {
                 .map_err(SimError::Start)?;
                 if system.load.is_some() {
                     // A load has weight only, whatever the cable does.
-                    start[n - 1] = -1.0;
+                    start[6 * system.arc.len() + 5] = -1.0;
                 }
                 state.u.copy_from_slice(&start);
                 equilibrium::solve(system, time, &mut state.u, weight).map_err(SimError::Start)?;
@@ -204,7 +198,8 @@ impl Simulation {
                     }
                 }
                 if system.load.is_some() {
-                    state.u[n - 3..].copy_from_slice(direction.as_slice());
+                    let at = 6 * system.arc.len() + 3;
+                    state.u[at..at + 3].copy_from_slice(direction.as_slice());
                 }
                 equilibrium::meet(system, time, &mut state.u).map_err(SimError::Start)?;
                 equilibrium::glide(system, time, &mut state.w);
@@ -462,6 +457,7 @@ impl Simulation {
         self.system.lump = fresh.lump;
         self.system.surfaces = fresh.surfaces;
         self.system.load = fresh.load;
+        self.system.turning = fresh.turning;
         if let (FirstEnd::Winch { drive, .. }, Some(winch)) = (&mut self.system.first, &scene.winch) {
             drive.retune(winch);
         }

@@ -18,6 +18,7 @@ pub(super) fn check(tree: &Table, problems: &mut Problems) {
     ascending_tables(tree, problems);
     viscosity(tree, problems);
     setpoint(tree, problems);
+    turning_sheaves(tree, problems);
     initial(tree, problems);
     if let (Some(least), Some(greatest)) = (real(tree, "solver.step_min"), real(tree, "solver.step_max"))
         && least > greatest
@@ -134,6 +135,20 @@ fn viscosity(tree: &Table, problems: &mut Problems) {
         |(form, name, value): (Form, String, &Value)| (matches!(form, Form::Coefficient) && !value.is_float()).then_some(name);
     if let Some(name) = values(tree).find_map(of_reynolds) {
         problems.add("fluid.viscosity", format!("missing; {name} depends on the Reynolds number, so a number > 0 in Pa.s is expected"));
+    }
+}
+
+/// Nothing but friction turns a sheave.
+fn turning_sheaves(tree: &Table, problems: &mut Problems) {
+    let Some(Value::Array(sheaves)) = tree.get("sheave") else { return };
+    for (i, sheave) in sheaves.iter().enumerate() {
+        let number = |key: &str| sheave.get(key).and_then(Value::as_float);
+        if number("inertia").is_some() && number("friction").is_none_or(|f| f <= 0.0) {
+            problems.add_once(
+                &format!("sheave[{}].inertia", i + 1),
+                "given without friction; expected sheave.friction above 0, since nothing else lets the cable turn the sheave",
+            );
+        }
     }
 }
 

@@ -11,6 +11,7 @@ mod load;
 mod matrices;
 mod mixed;
 mod points;
+mod turning;
 mod wetting;
 
 pub use contact::SurfaceLoad;
@@ -19,8 +20,9 @@ pub use elements::{Chain, Tally, Wetness, gather};
 pub use environment::Environment;
 pub use far_end::FarEnd;
 pub use load::RigidLoad;
-pub use matrices::Matrices;
+pub use matrices::{Coupling, Matrices};
 pub use points::ElementPoint;
+pub use turning::TurningSheave;
 
 use crate::cable::section::Section;
 use crate::contact::surface::{Friction, Groove, Surface};
@@ -123,6 +125,8 @@ pub struct System {
     pub over: Vec<bool>,
     /// What each of them feels, of the last evaluation.
     pub surface_loads: Vec<SurfaceLoad>,
+    /// Those that turn.
+    pub turning: Vec<TurningSheave>,
     /// Forces of drum and sheaves on the elements' slots, of the last evaluation.
     pub contact_forces: Vec<[f64; 12]>,
     /// Force of everything outside the cable on the last node, of the last evaluation, N.
@@ -187,6 +191,7 @@ impl System {
             names: scene.sheaves.iter().map(|s| s.name.clone()).collect(),
             over: scene.sheaves.iter().map(|s| s.over).collect(),
             surface_loads: vec![SurfaceLoad::default(); surfaces.len()],
+            turning: TurningSheave::all(scene, surfaces.len(), n + 1 + usize::from(scene.load.is_some())),
             surfaces,
             lump_force: [0.0; 3],
             clamp_force: [0.0; 3],
@@ -200,9 +205,9 @@ impl System {
         }
     }
 
-    /// Number of blocks of six unknowns: the cable's nodes, and the load's.
+    /// Number of blocks of six unknowns: the cable's nodes, the load's, and those of turning sheaves.
     pub fn nodes(&self) -> usize {
-        self.arc.len() + usize::from(self.load.is_some())
+        self.arc.len() + usize::from(self.load.is_some()) + self.turning.len().div_ceil(6)
     }
 
     /// Arc length of a block, the load's being the cable's end, m.
@@ -297,6 +302,7 @@ impl System {
             }
         }
         self.ends::<TANGENT>(env, u, w, a, f, m);
+        self.turn::<TANGENT>(env, w, a, f, m);
         self.account_for_far_end(env, u, w);
     }
 
@@ -432,6 +438,9 @@ impl System {
                 }
                 m.mass.diagonal[node][r][r] = 1.0;
             }
+            for c in &mut m.couplings {
+                c.damping_column[6 * node..6 * node + 3].fill(0.0);
+            }
         }
     }
 
@@ -510,9 +519,7 @@ impl Problem for System {
 
     fn linearize(&mut self, t: f64, u: &[f64], w: &[f64], a: &[f64], m: &mut Matrices, f: &mut [f64]) {
         let env = self.environment(t);
-        for b in [&mut m.mass, &mut m.damping, &mut m.stiffness] {
-            b.clear();
-        }
+        m.clear(self.turning.iter().map(|s| s.at));
         // The tangent wants F − M(u) a, the caller F: add M a back.
         let varies = self.mass_varies();
         self.evaluate::<true>(&env, u, w, varies.then_some(a), if self.keeps_axial { Axially::Begin } else { Axially::Law }, f, m);
