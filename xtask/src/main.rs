@@ -1,13 +1,16 @@
 //! fairlead's commands: one file each.
 
+mod binary;
 mod demo;
 mod demo_report;
 mod error;
 mod host;
 mod html_report;
+mod library;
 mod package;
 mod platform;
 mod plots;
+mod python;
 mod report;
 mod results;
 mod run;
@@ -16,6 +19,7 @@ mod seakeeping;
 mod series;
 mod ship_motion;
 mod test;
+mod toolchain;
 mod validate;
 mod xml_tree;
 
