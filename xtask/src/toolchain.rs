@@ -96,8 +96,8 @@ impl Toolchain {
     fn remap(&self) -> Vec<OsString> {
         let home = env::var_os("CARGO_HOME").map(PathBuf::from).or_else(|| Some(env::home_dir()?.join(".cargo")));
         // One folder for each registry, named after where it was reached.
-        let registries = home.iter().filter_map(|home| std::fs::read_dir(home.join("registry/src")).ok()).flatten().flatten();
-        let registries = registries.map(|entry| (Some(entry.path()), "crates"));
+        let sources = home.as_ref().and_then(|home| std::fs::read_dir(home.join("registry/src")).ok());
+        let registries: Vec<_> = sources.into_iter().flatten().flatten().map(|entry| (Some(entry.path()), "crates")).collect();
         let sysroot = output(&self.rustc, &["--print", "sysroot"]).map(|text| PathBuf::from(text).join("lib/rustlib/src/rust"));
         let folders = [(home, "cargo"), (sysroot, "rust"), (Some(root()), "fairlead")];
         let flag = |(folder, name): (Option<PathBuf>, &str)| {
