@@ -8,7 +8,7 @@ use super::environment::Environment;
 use super::matrices::{Matrices, element_block};
 use super::{System, gather};
 use crate::cable::shape;
-use crate::contact::arcs::{Arc, Cubic, Touch};
+use crate::contact::arcs::{Arc, Cubic, Samples, Touch};
 use crate::contact::surface::{Face, Surface};
 use crate::math::lanes::{Mat3, Vec3, axpy, dot, mat_vec};
 use crate::math::quadrature::GAUSS5;
@@ -102,8 +102,9 @@ pub fn near(surface: &Surface, frame: &SurfaceFrame, u: &[Vec3<f64>; 4], l: f64)
 /// Calls `found` with every arc of element `e` in contact with a face (its index first).
 pub fn touching(surface: &Surface, curve: &Cubic, e: usize, mut found: impl FnMut(usize, Face, Arc)) {
     let (faces, count) = surface.faces();
+    let samples = Samples::new(surface, curve, if e == 0 { BEYOND_PIN } else { 0.0 });
     for (i, &face) in faces[..count].iter().enumerate() {
-        Touch { surface, face, curve }.arcs(if e == 0 { BEYOND_PIN } else { 0.0 }, |arc| found(i, face, arc));
+        Touch { surface, face, curve }.arcs(&samples, |arc| found(i, face, arc));
     }
 }
 
@@ -270,22 +271,9 @@ impl Tangent {
                     }
                 }
             }
-            for i in 0..4 {
-                for j in 0..4 {
-                    let both = wl * shape[i] * shape[j];
-                    for r in 0..3 {
-                        for c in 0..3 {
-                            self.stiffness[3 * i + r][3 * j + c] -= both * ds[r][c];
-                        }
-                    }
-                    if damped {
-                        for r in 0..3 {
-                            for c in 0..3 {
-                                self.damping[3 * i + r][3 * j + c] -= both * load.dv[r][c];
-                            }
-                        }
-                    }
-                }
+            subtract_products(&mut self.stiffness, wl, &shape, &ds);
+            if damped {
+                subtract_products(&mut self.damping, wl, &shape, &load.dv);
             }
             // T = s₂ f₁ − s₁ f₂ per length, with its derivatives.
             let moment = s[2] * load.f[1] - s[1] * load.f[2];
@@ -341,6 +329,21 @@ impl Tangent {
                 for i in 0..12 {
                     self.stiffness[i][j] -= by_ends[end][i] * rate;
                 }
+            }
+        }
+    }
+}
+
+/// m −= w sᵢ sⱼ b for every pair of slots.
+#[inline(always)]
+fn subtract_products(m: &mut [[f64; 12]; 12], w: f64, s: &[f64; 4], b: &Mat3<f64>) {
+    // Whole rows at a time.
+    let rows: [[f64; 12]; 3] = std::array::from_fn(|r| std::array::from_fn(|k| s[k / 3] * b[r][k % 3]));
+    for i in 0..4 {
+        let f = w * s[i];
+        for r in 0..3 {
+            for k in 0..12 {
+                m[3 * i + r][k] -= f * rows[r][k];
             }
         }
     }
