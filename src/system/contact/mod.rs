@@ -4,6 +4,8 @@
 //! smoothly as the cable is laid on or lifted off, whatever the mesh. The arcs' ends move with the shape; their part of the tangent is exact
 //! too. All of an element's work is done in the surface's axes and turned into world axes once.
 
+mod press;
+
 use super::environment::Environment;
 use super::matrices::{Matrices, element_block};
 use super::{System, gather};
@@ -12,6 +14,7 @@ use crate::contact::arcs::{Arc, Cubic, Samples, Touch};
 use crate::contact::surface::{Face, Surface};
 use crate::math::lanes::{Mat3, Vec3, axpy, dot, mat_vec};
 use crate::math::quadrature::GAUSS5;
+use press::Press;
 
 /// Where the search begins in the first element. Where its node lies on the surface whatever the shape, ξ = 0 is a root of the gap that says
 /// nothing, of a sign that is rounding.
@@ -167,7 +170,7 @@ impl System {
                 let mut touched = false;
                 touching(surface, &curve, e, |side, face, arc| {
                     touched = true;
-                    push(surface, side, face, &arc, &curve, velocity, turning.spin, l, &mut forces, total);
+                    Press { surface, side, face, arc, curve: &curve, velocity, spin: turning.spin, length: l }.add(&mut forces, total);
                     if TANGENT {
                         tangent.get_or_insert(Tangent::NONE).arc(surface, face, &arc, &curve, velocity, &turning, &frame.turn, l);
                     }
@@ -201,39 +204,6 @@ impl System {
                         }
                     }
                 }
-            }
-        }
-    }
-}
-
-/// Adds an arc's forces.
-#[inline]
-fn push(
-    surface: &Surface,
-    side: usize,
-    face: Face,
-    arc: &Arc,
-    curve: &Cubic,
-    velocity: Option<&Cubic>,
-    spin: f64,
-    l: f64,
-    forces: &mut Forces,
-    total: &mut SurfaceLoad,
-) {
-    let length = arc.to - arc.from;
-    for (position, weight) in GAUSS5 {
-        let x = arc.from + length * position;
-        let s = curve.at(x);
-        let Some(load) = surface.load::<false>(face, &s, &velocity.map_or([0.0; 3], |v| v.at(x)), spin) else { continue };
-        let shape = shape::value(x, l);
-        let wl = weight * length * l;
-        let f = load.f.map(|f| wl * f);
-        total.faces[side] += wl * load.normal;
-        for c in 0..3 {
-            total.force[c] += f[c];
-            total.moment[c] += s[(c + 1) % 3] * f[(c + 2) % 3] - s[(c + 2) % 3] * f[(c + 1) % 3];
-            for i in 0..4 {
-                forces[i][c] += shape[i] * f[c];
             }
         }
     }
