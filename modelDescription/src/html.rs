@@ -52,7 +52,7 @@ const CONTENTS: &str = "<p><a href=\"#model\">Model</a> &middot; <a href=\"#fram
 
 const MODEL: &str = "<h2 id=\"model\">Model</h2>
 <p>The cable is a chain of gradient-deficient elements of the absolute nodal coordinate formulation (Gerstmayr and Shabana 2006): geometrically
-exact stretching and bending, no torsion. Water acts by buoyancy, drag, added mass and current on the submerged part only. Contact with drums and
+exact stretching and bending, no torsion. Water acts by buoyancy, drag, added mass and current on the submerged part only. The current may carry turbulence: seeded noise of a given spectrum, uniform in space. Contact with drums and
 sheaves is a line contact after Hunt and Crossley, integrated over the arcs that touch. A V groove has two flanks; their force fades over the last
 tenth of the groove's depth, and beside the rim, so that a cable can climb out and is then free. Friction on a sheave is Coulomb's, fading below a
 slip of 1 mm/s. The cable's first node is driven exactly along the winch drum, or fixed at an anchor.</p>
@@ -91,7 +91,7 @@ Outputs are those of the last communication point. The state can be saved, resto
 const LIMITS: &str = "<h2 id=\"limits\">Limits</h2>
 <ul>
 <li>No torsion, no contact of the cable with itself or with the sea bed, one layer on the drum.</li>
-<li>The water surface is still; waves act through the ship's motion only. The current is horizontal and does not change along x and y.</li>
+<li>The water surface is still; waves act through the ship's motion only. The current's profile is horizontal and does not change along x and y; its turbulence is the same everywhere.</li>
 <li>A cable without bending stiffness (EI = 0) has no defined shape where it is slack.</li>
 <li>With <code>cable.compression = \"linear\"</code> a slack cable buckles at the mesh's wavelength; snap loads are then not to be trusted.</li>
 <li>Pitch stays within &plusmn;90&deg; (Euler angles).</li>

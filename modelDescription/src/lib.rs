@@ -88,6 +88,8 @@ pub struct Shape {
     pub sheaves: Vec<bool>,
     /// There is water.
     pub fluid: bool,
+    /// Its current is turbulent.
+    pub noise: bool,
     /// There is a towed body.
     pub body: bool,
     /// It takes an external force.
