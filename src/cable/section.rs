@@ -102,6 +102,10 @@ pub struct Resistance {
     pub c_axial: f64,
     /// g = ∂ε/∂r_p.
     pub g: Vec3<f64>,
+    /// σ(ε), the elastic axial force, N.
+    pub elastic: f64,
+    /// dσ/dε, N.
+    pub ea: f64,
     /// c_b/β², N·m⁴·s.
     pub c_bending: f64,
     /// β ∂β/∂r_p, 1/m².
@@ -118,7 +122,7 @@ impl Resistance {
     #[inline(always)]
     fn zero() -> Self {
         let (z, o) = ([0.0; 3], zero_mat());
-        Self { n: z, m: z, k_pp: o, k_pq: o, k_qp: o, k_qq: o, c_axial: 0.0, g: z, c_bending: 0.0, e2: z, e1: z, energy: 0.0, power: 0.0 }
+        Self { n: z, m: z, k_pp: o, k_pq: o, k_qp: o, k_qq: o, c_axial: 0.0, g: z, elastic: 0.0, ea: 0.0, c_bending: 0.0, e2: z, e1: z, energy: 0.0, power: 0.0 }
     }
 }
 
@@ -173,6 +177,7 @@ impl Section {
         let elastic = ea * eps;
         let n = elastic + ca * rate;
         out.n = scale(n, &g);
+        (out.g, out.elastic, out.ea) = (g, elastic, ea);
         out.energy += elastic * eps * 0.5;
         out.power += elastic * rate;
         if TANGENT {
@@ -181,7 +186,7 @@ impl Section {
             let row = axpy(&scale(ea - (ca * rate + n) * c * b, &g), ca * c, &s.vp);
             add_outer(&mut out.k_pp, 1.0, &g, &row);
             add_identity(&mut out.k_pp, nc);
-            (out.c_axial, out.g) = (ca, g);
+            out.c_axial = ca;
         }
     }
 

@@ -10,7 +10,7 @@
 //! Where M depends on u, the accelerations a join as algebraic unknowns of 0 = F − M(u) a; eliminating them leaves the same matrix and the
 //! extra terms −(M(u_i) − M) a_i, with increments A_i = W_i/g − a_i − Σ c_ij W_j / h.
 
-use super::{Problem, Trial};
+use super::{Problem, Stage, Trial};
 use crate::linalg::{BlockTridiagonal, Columns};
 use crate::math::lanes::{Kernel, widest};
 use crate::system::Matrices;
@@ -21,13 +21,14 @@ const GAMMA: f64 = 0.25;
 const ALPHA: [f64; STAGES] = [0.0, 0.386, 0.21, 0.63, 1.0, 1.0];
 /// Factors of ∂F/∂t.
 const GAMMA_I: [f64; STAGES] = [0.25, -0.1043, 0.1035, -0.036_200_000_000_000_23, 0.0, 0.0];
-/// Stage values: y + Σ a_ij U_j; the last stage has the same row and a_65 = 1.
-const A: [&[f64]; STAGES - 1] = [
+/// Stage values: y + Σ a_ij U_j.
+const A: [&[f64]; STAGES] = [
     &[],
     &[1.544],
     &[0.946_678_528_081_582_6, 0.255_701_169_898_328_4],
     &[3.314_825_187_068_521, 2.896_124_015_972_201, 0.998_641_913_997_781_7],
     &[1.221_224_509_226_641, 6.019_134_481_288_629, 12.537_083_329_320_87, -0.687_886_036_105_895],
+    &[1.221_224_509_226_641, 6.019_134_481_288_629, 12.537_083_329_320_87, -0.687_886_036_105_895, 1.0],
 ];
 /// Σ c_ij U_j / h.
 const C: [&[f64]; STAGES] = [
@@ -99,7 +100,8 @@ impl Rodas4 {
                 self.rhs.copy_from_slice(force);
             } else {
                 let a = varies.then_some(&self.stage[2][..]);
-                problem.force(t + ALPHA[i] * h, &self.stage[0], &self.stage[1], a, &mut self.rhs);
+                let stage = Stage { index: i, weights: A[i] };
+                problem.stage_force(stage, t + ALPHA[i] * h, &self.stage[0], &self.stage[1], a, &mut self.rhs);
             }
             if driven && GAMMA_I[i] != 0.0 {
                 add(&mut self.rhs, GAMMA_I[i] * h, &self.rate);
@@ -253,6 +255,9 @@ mod tests {
             for i in 0..6 {
                 f[i] = self.f(t, u[i], w[i]) - a.map_or(0.0, |a| self.mass(u[i]) * a[i]);
             }
+        }
+        fn stage_force(&mut self, _: Stage, t: f64, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64]) {
+            self.force(t, u, w, a, f);
         }
         fn linearize(&mut self, t: f64, u: &[f64], w: &[f64], a: &[f64], m: &mut Matrices, f: &mut [f64]) {
             self.force(t, u, w, None, f);

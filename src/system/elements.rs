@@ -3,10 +3,12 @@
 
 use super::environment::Environment;
 use super::matrices::{Matrices, element_block};
+use super::mixed::AxialUnknown;
 use super::wetting::{Height, bounds};
 use crate::cable::section::{Section, Strains};
 use crate::cable::shape;
 use crate::hydro::line::{LineInWater, LinePoint, Stream};
+use crate::integrator::Stage;
 use crate::linalg::BlockTridiagonal;
 use crate::math::lanes::{Kernel, Lanes, Vec3, dot, lane, scale, set_lane, widest};
 use crate::math::quadrature::GAUSS3;
@@ -75,6 +77,9 @@ fn gather_lane(x: &[f64], e: usize, length: f64, l: usize, to: &mut [Rows3; 4]) 
 
 /// Slots and differences of slots that r_p depends on: r(L) − r(0), L r_p(0), L r_p(L).
 const SPANS: usize = 3;
+
+/// Axial forces within a step, at the Gauss points of elements side by side.
+pub type Axial = [AxialUnknown<LANES>; 3];
 
 /// A Gauss point of the element of unit length, on whose slots (r(0), L r_p(0), r(L), L r_p(L)) the shape functions are pure numbers.
 #[derive(Clone, Copy)]
@@ -157,6 +162,8 @@ struct Pass<'a, const TANGENT: bool> {
     u: &'a [f64],
     w: &'a [f64],
     a: Option<&'a [f64]>,
+    stage: Option<Stage<'a>>,
+    axial: &'a mut [Axial],
     forces: &'a mut [[f64; 12]],
     matrices: &'a mut Matrices,
 }
@@ -166,11 +173,20 @@ impl<const TANGENT: bool> Kernel for Pass<'_, TANGENT> {
 
     #[inline(always)]
     fn run(self) -> Tally {
-        self.chain.pass_with::<TANGENT>(self.env, self.u, self.w, self.a, self.forces, self.matrices)
+        let Self { chain, env, u, w, a, stage, axial, forces, matrices } = self;
+        match stage {
+            Some(stage) => chain.pass_with::<TANGENT, true>(env, u, w, a, stage, axial, forces, matrices),
+            None => chain.pass_with::<TANGENT, false>(env, u, w, a, Stage { index: 0, weights: &[] }, axial, forces, matrices),
+        }
     }
 }
 
 impl Chain {
+    /// Room for the axial forces of all elements.
+    pub fn axial(&self) -> Vec<Axial> {
+        vec![[AxialUnknown::NONE; 3]; self.lengths.len().div_ceil(LANES)]
+    }
+
     /// How much of element `e` is under water.
     pub fn wetness(&self, water: &LineInWater, env: &Environment, u: &[f64], e: usize) -> (Wetness, Height) {
         let q = gather(u, e);
@@ -187,26 +203,31 @@ impl Chain {
     }
 
     /// Overwrites `forces` (12 per element: all that acts on the element's own slots, inertia included) and, with `TANGENT`, adds M, D and K of
-    /// F − M(u) a to `matrices`. `a`: acceleration relative to the first node; without it no inertia relative to the first node.
+    /// F − M(u) a to `matrices`. `a`: acceleration relative to the first node; without it no inertia relative to the first node. At a `stage`
+    /// of the step that began with the last tangent the forces are those of the axial unknowns.
     pub fn pass<const TANGENT: bool>(
         &self,
         env: &Environment,
         u: &[f64],
         w: &[f64],
         a: Option<&[f64]>,
+        stage: Option<Stage>,
+        axial: &mut [Axial],
         forces: &mut [[f64; 12]],
         matrices: &mut Matrices,
     ) -> Tally {
-        widest(Pass::<TANGENT> { chain: self, env, u, w, a, forces, matrices })
+        widest(Pass::<TANGENT> { chain: self, env, u, w, a, stage, axial, forces, matrices })
     }
 
     #[inline(always)]
-    fn pass_with<const TANGENT: bool>(
+    fn pass_with<const TANGENT: bool, const STAGE: bool>(
         &self,
         env: &Environment,
         u: &[f64],
         w: &[f64],
         a: Option<&[f64]>,
+        stage: Stage,
+        axial: &mut [Axial],
         forces: &mut [[f64; 12]],
         matrices: &mut Matrices,
     ) -> Tally {
@@ -217,8 +238,8 @@ impl Chain {
         for first in (0..self.lengths.len()).step_by(LANES) {
             let lanes = LANES.min(self.lengths.len() - first);
             self.gather_batch(env, first, u, w, a, &mut batch);
-            for (station, slopes) in stations.iter().zip(&mut slopes) {
-                self.resist::<TANGENT>(&mut batch, station, slopes);
+            for ((station, slopes), axial) in stations.iter().zip(&mut slopes).zip(&mut axial[first / LANES]) {
+                self.resist::<TANGENT, STAGE>(&mut batch, station, slopes, &stage, axial);
             }
             let wet = batch.wet.0.iter().any(|x| *x > 0.0);
             if let Some(water) = &self.water
@@ -283,14 +304,30 @@ impl Chain {
 
     /// Internal forces at a Gauss point.
     #[inline(always)]
-    fn resist<const TANGENT: bool>(&self, batch: &mut Batch, station: &Station, slopes: &mut Slopes) {
+    fn resist<const TANGENT: bool, const STAGE: bool>(
+        &self,
+        batch: &mut Batch,
+        station: &Station,
+        slopes: &mut Slopes,
+        stage: &Stage,
+        axial: &mut AxialUnknown<LANES>,
+    ) {
         let section = self.section;
         let Station { weight, b, d, .. } = *station;
+        if STAGE {
+            axial.enter(stage);
+        }
         for l in 0..LANES {
             let i = batch.inverse.0[l];
             let (u, w) = (spans(&batch.u, l), spans(&batch.w, l));
             let strains = Strains { p: along(&b, &u, i), pp: along(&d, &u, i * i), vp: along(&b, &w, i), vpp: along(&d, &w, i * i) };
-            let r = section.resistance::<TANGENT>(&strains);
+            let mut r = section.resistance::<TANGENT>(&strains);
+            if STAGE {
+                r.n = axial.force(l, stage.index, &r, &strains.p);
+            }
+            if TANGENT {
+                axial.begin(l, &r, &strains.p);
+            }
             let wl = weight * batch.length.0[l];
             batch.elastic.0[l] += wl * r.energy;
             batch.power.0[l] += wl * r.power;

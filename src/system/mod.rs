@@ -9,11 +9,13 @@ mod environment;
 mod far_end;
 mod load;
 mod matrices;
+mod mixed;
 mod points;
 mod wetting;
 
 pub use contact::SurfaceLoad;
 pub use elements::{Chain, Tally, Wetness, gather};
+use elements::Axial;
 pub use environment::Environment;
 pub use far_end::FarEnd;
 pub use load::RigidLoad;
@@ -26,7 +28,7 @@ use crate::hydro::line::{Flow, LineInWater, LinePoint};
 use crate::hydro::lump::LumpInWater;
 use crate::hydro::surface::line_share;
 use crate::hydro::turbulence::Turbulence;
-use crate::integrator::Problem;
+use crate::integrator::{Problem, Stage};
 use crate::math::jet::Jet;
 use crate::math::lanes::{Mat3, Vec3, add_identity, add_outer, dot};
 use crate::math::quadrature::GAUSS3;
@@ -138,6 +140,7 @@ pub struct System {
     /// Tolerable velocity error in the mass norm, kg·m²/s².
     tolerance: f64,
     matrices: Matrices,
+    axial: Vec<Axial>,
 }
 
 impl System {
@@ -167,8 +170,10 @@ impl System {
         };
         let surfaces = surfaces(scene);
         let n = scene.elements.len();
+        let chain = Chain { lengths: scene.elements.clone(), mass_per_length: scene.cable.mass_per_length, section, water };
+        let axial = chain.axial();
         Self {
-            chain: Chain { lengths: scene.elements.clone(), mass_per_length: scene.cable.mass_per_length, section, water },
+            chain,
             arc,
             first,
             lump,
@@ -192,6 +197,7 @@ impl System {
             gravity: scene.gravity,
             tolerance: 1.0,
             matrices: Matrices::default(),
+            axial,
         }
     }
 
@@ -289,10 +295,11 @@ impl System {
         u: &[f64],
         w: &[f64],
         a: Option<&[f64]>,
+        stage: Option<Stage>,
         f: &mut [f64],
         m: &mut Matrices,
     ) {
-        self.tally = self.chain.pass::<TANGENT>(env, u, w, a, &mut self.forces, m);
+        self.tally = self.chain.pass::<TANGENT>(env, u, w, a, stage, &mut self.axial, &mut self.forces, m);
         if self.chain.water.is_some() {
             self.surface::<TANGENT>(env, u, w, a, m);
         }
@@ -444,11 +451,20 @@ impl System {
         }
     }
 
+    fn force_at(&mut self, stage: Option<Stage>, t: f64, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64]) {
+        let env = self.environment(t);
+        let mut none = std::mem::take(&mut self.matrices);
+        self.evaluate::<false>(&env, u, w, a, stage, f, &mut none);
+        self.matrices = none;
+        f[..3].fill(0.0);
+        self.drive_far_end(&env, a, f);
+    }
+
     /// Forces with all inertia, nothing zeroed: rows of the first node hold what the support must balance.
     pub fn balance(&mut self, t: f64, u: &[f64], w: &[f64], a: &[f64], f: &mut [f64]) {
         let env = self.environment(t);
         let mut none = std::mem::take(&mut self.matrices);
-        self.evaluate::<false>(&env, u, w, Some(a), f, &mut none);
+        self.evaluate::<false>(&env, u, w, Some(a), None, f, &mut none);
         self.matrices = none;
     }
 }
@@ -481,12 +497,11 @@ impl Problem for System {
     }
 
     fn force(&mut self, t: f64, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64]) {
-        let env = self.environment(t);
-        let mut none = std::mem::take(&mut self.matrices);
-        self.evaluate::<false>(&env, u, w, a, f, &mut none);
-        self.matrices = none;
-        f[..3].fill(0.0);
-        self.drive_far_end(&env, a, f);
+        self.force_at(None, t, u, w, a, f);
+    }
+
+    fn stage_force(&mut self, stage: Stage, t: f64, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64]) {
+        self.force_at(Some(stage), t, u, w, a, f);
     }
 
     fn linearize(&mut self, t: f64, u: &[f64], w: &[f64], a: &[f64], m: &mut Matrices, f: &mut [f64]) {
@@ -496,7 +511,7 @@ impl Problem for System {
         }
         // The tangent wants F − M(u) a, the caller F: add M a back.
         let varies = self.mass_varies();
-        self.evaluate::<true>(&env, u, w, varies.then_some(a), f, m);
+        self.evaluate::<true>(&env, u, w, varies.then_some(a), None, f, m);
         if varies {
             m.mass.multiply_add(1.0, a, f);
         }
