@@ -16,6 +16,8 @@ pub static SCENES: &[BuiltIn] = &[
     BuiltIn { name: "pulley_1", text: include_str!("../scenes/pulley_1.toml") },
     BuiltIn { name: "pulley_2", text: include_str!("../scenes/pulley_2.toml") },
     BuiltIn { name: "pulley_3", text: include_str!("../scenes/pulley_3.toml") },
+    BuiltIn { name: "moving_pulley", text: include_str!("../scenes/moving_pulley.toml") },
+    BuiltIn { name: "overboard", text: include_str!("../scenes/overboard.toml") },
 ];
 
 /// The built-in scene of that name.
