@@ -9,6 +9,7 @@ mod document;
 pub mod guid;
 pub mod html;
 pub mod keys;
+pub mod notes;
 mod pattern;
 pub mod scenes;
 pub mod table;

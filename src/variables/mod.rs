@@ -108,6 +108,8 @@ impl Model {
             version: VERSION,
             tolerance: self.initial_scene.solver.tolerance,
             shape: &self.shape,
+            text: &self.text,
+            picture: None,
             variables: &self.variables,
         }
     }

@@ -9,6 +9,7 @@ mod package;
 mod platform;
 mod plots;
 mod run;
+mod scene_pages;
 mod scenes;
 mod seakeeping;
 mod series;
