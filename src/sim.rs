@@ -73,6 +73,8 @@ struct State {
     u: Vec<f64>,
     w: Vec<f64>,
     a: Vec<f64>,
+    /// Axial forces, three per element, N.
+    n: Vec<f64>,
     /// Sub-step that the error control would take next, s.
     step: f64,
     /// Length and error of the last accepted sub-step.
@@ -104,12 +106,6 @@ impl Simulation {
         if scene.winch.as_ref().is_some_and(|w| w.setpoint != crate::scene::Setpoint::External) {
             return Err(SimError::Start("[winch] setpoint other than \"external\" is not supported by this version".into()));
         }
-        if let Some(s) = scene.sheaves.iter().find(|s| s.inertia.is_some()) {
-            return Err(SimError::Start(format!(
-                "sheave \"{}\": a sheave that turns ([[sheave]] inertia) is not supported by this version; without it the sheave stands still",
-                s.name
-            )));
-        }
         let mut system = System::new(scene);
         let (n, nodes) = (system.size(), system.nodes());
         let zeros = || vec![0.0; n];
@@ -122,7 +118,7 @@ impl Simulation {
             mass.factor().map_err(|e| SimError::Start(format!("the mass matrix is singular at node {}", e.row)))?;
             constant_mass = Some(mass);
         }
-        let state = State { u: zeros(), w: zeros(), a: zeros(), ..State::default() };
+        let state = State { u: zeros(), w: zeros(), a: zeros(), n: vec![0.0; 3 * scene.elements.len()], ..State::default() };
         Ok(Self {
             scene: scene.clone(),
             method: Rodas4::new(n),
@@ -146,6 +142,7 @@ impl Simulation {
     pub fn initialize(&mut self, time: f64, inputs: &Inputs) -> Result<(), SimError> {
         let scene = &self.scene;
         let system = &mut self.system;
+        system.keeps_axial = false;
         system.begin = time;
         if let Some(turbulence) = &mut system.turbulence {
             turbulence.start = time;
@@ -178,7 +175,7 @@ impl Simulation {
                 .map_err(SimError::Start)?;
                 if system.load.is_some() {
                     // A load has weight only, whatever the cable does.
-                    start[n - 1] = -1.0;
+                    start[6 * system.arc.len() + 5] = -1.0;
                 }
                 state.u.copy_from_slice(&start);
                 equilibrium::solve(system, time, &mut state.u, weight).map_err(SimError::Start)?;
@@ -204,7 +201,8 @@ impl Simulation {
                     }
                 }
                 if system.load.is_some() {
-                    state.u[n - 3..].copy_from_slice(direction.as_slice());
+                    let at = 6 * system.arc.len() + 3;
+                    state.u[at..at + 3].copy_from_slice(direction.as_slice());
                 }
                 equilibrium::meet(system, time, &mut state.u).map_err(SimError::Start)?;
                 equilibrium::glide(system, time, &mut state.w);
@@ -220,10 +218,12 @@ impl Simulation {
         state.step = self.scene.solver.step_max;
         self.system.set_tolerance(STRICTNESS * self.scene.solver.tolerance, self.state.tension);
         self.settle();
+        self.system.save_axial(&mut self.state.n);
         self.observe();
         // Errors are measured by the greater of weight and first tension.
         self.state.tension = weight.max(self.outputs.cable.tension_max);
         self.system.set_tolerance(STRICTNESS * self.scene.solver.tolerance, self.state.tension);
+        self.system.keeps_axial = true;
         self.state.step = self.first_step();
         self.state.last = [0.0; 2];
         self.state.ledger = Ledger::start(&self.system.tally, self.state.tension * self.scene.cable.diameter);
@@ -306,12 +306,14 @@ impl Simulation {
                 if let FirstEnd::Winch { drive, .. } = &mut self.system.first {
                     drive.commit(time);
                 }
+                self.system.save_axial(&mut self.state.n);
                 self.conclude();
                 self.observe();
                 Ok(())
             }
             Err(message) => {
                 self.state.copy(&self.backup);
+                self.system.restore_axial(&self.state.n);
                 self.system.ship = ship;
                 if let (FirstEnd::Winch { drive, .. }, Some(x)) = (&mut self.system.first, winch) {
                     drive.restore(begin, x);
@@ -402,6 +404,7 @@ impl Simulation {
                 mid_u[i] = 0.5 * (s.u[i] + u[i]) + h / 8.0 * (s.w[i] - w[i]);
                 mid_w[i] = 1.5 / h * (u[i] - s.u[i]) - 0.25 * (s.w[i] + w[i]);
             }
+            self.system.accept(u, w, &Rodas4::WEIGHTS);
             s.u.copy_from_slice(u);
             s.w.copy_from_slice(w);
             if self.system.mass_varies() {
@@ -457,6 +460,7 @@ impl Simulation {
         self.system.lump = fresh.lump;
         self.system.surfaces = fresh.surfaces;
         self.system.load = fresh.load;
+        self.system.turning = fresh.turning;
         if let (FirstEnd::Winch { drive, .. }, Some(winch)) = (&mut self.system.first, &scene.winch) {
             drive.retune(winch);
         }
@@ -497,6 +501,7 @@ impl Simulation {
         let mut numbers = bytes.chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().unwrap_or_default()));
         self.visit(&mut |x| *x = numbers.next().unwrap_or(f64::NAN));
         let t = self.state.time;
+        self.system.restore_axial(&self.state.n);
         if let FirstEnd::Winch { drive, .. } = &mut self.system.first {
             drive.restored(t);
         }
@@ -512,7 +517,7 @@ impl Simulation {
         for x in [&mut s.time, &mut s.step, h, error, &mut s.tension, &mut s.first_angle] {
             visit(x);
         }
-        s.u.iter_mut().chain(&mut s.w).chain(&mut s.a).for_each(&mut *visit);
+        s.u.iter_mut().chain(&mut s.w).chain(&mut s.a).chain(&mut s.n).for_each(&mut *visit);
         for c in &mut s.counts {
             let mut x = *c as f64;
             visit(&mut x);
@@ -536,6 +541,7 @@ impl State {
         self.u.copy_from_slice(&o.u);
         self.w.copy_from_slice(&o.w);
         self.a.copy_from_slice(&o.a);
+        self.n.copy_from_slice(&o.n);
         (self.time, self.step, self.last, self.tension, self.first_angle) = (o.time, o.step, o.last, o.tension, o.first_angle);
         (self.counts, self.ledger) = (o.counts, o.ledger);
     }

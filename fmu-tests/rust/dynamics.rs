@@ -148,21 +148,17 @@ fn exact_large_pendulum_keeps_its_period_and_its_energy() {
     assert!(worst < 2e-5, "{worst:e}"); // the cable's own 1e-5 of energy
 }
 
-/// What turns does not get stiffer: the sub-steps of a pendulum must not depend on EA (src/system/mixed.rs).
+/// A pendulum on a damped cable strained by 1e-3 is smooth: what turns must not cost steps (src/system/mixed.rs).
 #[test]
-fn exact_steps_do_not_depend_on_the_axial_stiffness() {
-    let steps = [1e4, 1e6, 1e8].map(|ea| {
-        let wire = Wire { length: 2.0, diameter: 1e-3, mass_per_length: 1e-5, ea, ei: 0.0, laws: "" };
-        let scene = wire.scene(4, &format!("{ANCHOR}[body]\nmass = 1.0\n[solver]\nstep_max = 0.1\n"));
-        let mut sim = started(&scene, &pull([9.81 * 0.5, 0.0, 9.81 * 0.75f64.sqrt()]));
-        run(&mut sim, 0.1, 20.0, still, |_, _| ());
-        (sim.outputs().solver.steps, sim.outputs().solver.rejected)
-    });
-    println!("pendulum of 20 s, EA 1e4, 1e6, 1e8 N: (steps, rejected) {steps:?}");
-    let all = steps.map(|(steps, rejected)| steps + rejected);
-    let most = all.into_iter().max().unwrap_or_default();
-    // The softest one also rings; without the axial unknowns the stiffest takes ten times as many as it.
-    assert!(all[2] <= all[0] && most < 1000, "{steps:?}");
+fn frozen_turning_costs_few_steps() {
+    let laws = "damping = { model = \"kelvin_voigt\", axial = 10, bending = 0 }";
+    let wire = Wire { length: 2.0, diameter: 1e-3, mass_per_length: 1e-2, ea: 1e4, ei: 0.0, laws };
+    let scene = wire.scene(4, &format!("{ANCHOR}[body]\nmass = 1.0\n[solver]\nstep_max = 0.1\n"));
+    let mut sim = started(&scene, &pull([9.81 * 0.5, 0.0, 9.81 * 0.75f64.sqrt()]));
+    run(&mut sim, 0.1, 20.0, still, |_, _| ());
+    let steps = sim.outputs().solver.steps + sim.outputs().solver.rejected;
+    println!("pendulum of 20 s: {steps} sub-steps");
+    assert!(steps < 2500, "{steps}"); // 2015; 5857 with the axial force taken from the strain at every stage
 }
 
 #[test]

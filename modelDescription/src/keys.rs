@@ -365,6 +365,8 @@ pub static KEYS: &[Key] = &[
     key(1119, "sheave.exponent", Real(&u::COEFFICIENT, Inside(0.5, 5.0)), real(1.5), "Exponent of the contact law"),
     key(1120, "sheave.friction", Real(&u::COEFFICIENT, NotNegative), real(0.0), "Coulomb friction coefficient"),
     key(1121, "sheave.inertia", Real(&u::INERTIA, Positive), Optional, "Moment of inertia about the axis; the sheave does not turn if left out"),
+    key(1122, "sheave.bearing_friction", Real(&u::MOMENT_SIZE, NotNegative), real(0.0), "Friction of the bearing (Coulomb), a moment").when(Given("inertia")),
+    key(1123, "sheave.bearing_damping", Real(&u::ROTARY_DAMPING, NotNegative), real(0.0), "Viscous friction of the bearing, moment per angular velocity").when(Given("inertia")),
 
     key(1130, "body.mass", Real(&u::MASS, Positive), Required, "Mass of the body"),
     key(1131, "body.volume", Real(&u::VOLUME, NotNegative), RequiredWith("fluid"), "Volume of the body"),

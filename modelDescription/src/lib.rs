@@ -70,6 +70,15 @@ pub enum Variability {
     Continuous,
 }
 
+/// What of a sheave decides which variables it has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SheaveShape {
+    /// It has a groove.
+    pub groove: bool,
+    /// It turns.
+    pub turns: bool,
+}
+
 /// What of the scene decides which variables exist.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shape {
@@ -85,8 +94,8 @@ pub struct Shape {
     pub external_setpoint: bool,
     /// There is an anchor.
     pub anchor: bool,
-    /// One entry per sheave: whether it has a groove.
-    pub sheaves: Vec<bool>,
+    /// One entry per sheave.
+    pub sheaves: Vec<SheaveShape>,
     /// There is water.
     pub fluid: bool,
     /// Its current is turbulent.

@@ -58,6 +58,10 @@ pub enum Output {
     SheaveInContact(usize),
     /// Whether the cable has left a sheave's groove.
     SheaveOutOfGroove(usize),
+    /// Angle of a turning sheave.
+    SheaveAngle(usize),
+    /// Angular velocity of a turning sheave.
+    SheaveRate(usize),
     /// `cable.tension_max`.
     CableTensionMax,
     /// `cable.tension_min`.
@@ -111,6 +115,8 @@ pub enum Occurs {
     EachSheave,
     /// For each sheave with a groove.
     EachGroove,
+    /// For each sheave that turns.
+    EachTurning,
     /// For each point of the cable.
     EachPoint,
 }
@@ -122,7 +128,8 @@ impl Occurs {
             Self::Always => vec![0],
             Self::If(condition) => (0..usize::from(condition(shape))).collect(),
             Self::EachSheave => (0..shape.sheaves.len()).collect(),
-            Self::EachGroove => (0..shape.sheaves.len()).filter(|&i| shape.sheaves[i]).collect(),
+            Self::EachGroove => (0..shape.sheaves.len()).filter(|&i| shape.sheaves[i].groove).collect(),
+            Self::EachTurning => (0..shape.sheaves.len()).filter(|&i| shape.sheaves[i].turns).collect(),
             Self::EachPoint => (0..shape.points).collect(),
         }
     }
@@ -202,7 +209,7 @@ const fn output(
     Family { id, name, occurs, of, signal: Signal::Output(make), description }
 }
 
-use Occurs::{Always, EachGroove, EachPoint, EachSheave, If};
+use Occurs::{Always, EachGroove, EachPoint, EachSheave, EachTurning, If};
 use Of::{Boolean, Integer, Real, Text};
 
 const WINCH: Occurs = If(|s| s.winch);
@@ -257,6 +264,8 @@ pub static FAMILIES: &[Family] = &[
     output(141, "sheave[i].line_load_min", EachSheave, Real(&u::LINE_LOAD), |i, _| Output::SheaveLineLoadMin(i), "Least line load in the contact arc; near zero, the cable is about to lift off"),
     output(142, "sheave[i].in_contact", EachSheave, Boolean, |i, _| Output::SheaveInContact(i), "The cable touches the sheave"),
     output(143, "sheave[i].out_of_groove", EachGroove, Boolean, |i, _| Output::SheaveOutOfGroove(i), "The cable has climbed out of the groove"),
+    output(144, "sheave[i].angle", EachTurning, Real(&u::ANGLE), |i, _| Output::SheaveAngle(i), "Angle by which the sheave has turned about its axis since the start, relative to the ship"),
+    output(145, "sheave[i].rate", EachTurning, Real(&u::ANGULAR_VELOCITY), |i, _| Output::SheaveRate(i), "Angular velocity of the sheave relative to the ship"),
     output(150, "cable.tension_max", Always, Real(&u::FORCE), |_, _| Output::CableTensionMax, "Greatest axial force along the cable"),
     output(151, "cable.tension_min", Always, Real(&u::FORCE), |_, _| Output::CableTensionMin, "Least axial force along the cable"),
     output(152, "cable.slack", Always, Boolean, |_, _| Output::CableSlack, "Some part of the cable carries no tension"),

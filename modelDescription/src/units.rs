@@ -56,6 +56,7 @@ pub static UNITS: &[Unit] = &[
     unit("N.m2", &[("kg", 1), ("m", 3), ("s", -2)], &[shown("kN.m2", 1e-3)]),
     unit("N.s", &[("kg", 1), ("m", 1), ("s", -1)], &[shown("kN.s", 1e-3)]),
     unit("N.m2.s", &[("kg", 1), ("m", 3), ("s", -1)], &[]),
+    unit("N.m.s/rad", &[("kg", 1), ("m", 2), ("s", -1), ("rad", -1)], &[]),
     unit("Pa", &[("kg", 1), ("m", -1), ("s", -2)], &[shown("GPa", 1e-9), shown("bar", 1e-5)]),
     unit("Pa.s", &[("kg", 1), ("m", -1), ("s", -1)], &[shown("mPa.s", 1e3)]),
 ];
@@ -167,6 +168,10 @@ types! {
     CONTACT_FORCE = of("ContactForce", "Force", "N").not_negative();
     /// A moment.
     MOMENT = of("Moment", "Torque", "N.m");
+    /// Size of a moment.
+    MOMENT_SIZE = of("MomentSize", "Torque", "N.m").not_negative();
+    /// Moment per angular velocity.
+    ROTARY_DAMPING = of("RotaryDamping", "RotationalDampingConstant", "N.m.s/rad").not_negative();
     /// Contact force per length of cable.
     LINE_LOAD = of("LineLoad", "LinearForceDensity", "N/m").not_negative();
     /// Young's modulus.

@@ -102,8 +102,10 @@ pub struct Resistance {
     pub c_axial: f64,
     /// g = ∂ε/∂r_p.
     pub g: Vec3<f64>,
-    /// σ(ε), the elastic axial force, N.
-    pub elastic: f64,
+    /// N = σ(ε) + c_a ε̇, N.
+    pub axial: f64,
+    /// ∂N/∂r_p, N.
+    pub by_p: Vec3<f64>,
     /// dσ/dε, N.
     pub ea: f64,
     /// c_b/β², N·m⁴·s.
@@ -122,7 +124,24 @@ impl Resistance {
     #[inline(always)]
     fn zero() -> Self {
         let (z, o) = ([0.0; 3], zero_mat());
-        Self { n: z, m: z, k_pp: o, k_pq: o, k_qp: o, k_qq: o, c_axial: 0.0, g: z, elastic: 0.0, ea: 0.0, c_bending: 0.0, e2: z, e1: z, energy: 0.0, power: 0.0 }
+        Self {
+            n: z,
+            m: z,
+            k_pp: o,
+            k_pq: o,
+            k_qp: o,
+            k_qq: o,
+            c_axial: 0.0,
+            g: z,
+            axial: 0.0,
+            by_p: z,
+            ea: 0.0,
+            c_bending: 0.0,
+            e2: z,
+            e1: z,
+            energy: 0.0,
+            power: 0.0,
+        }
     }
 }
 
@@ -153,8 +172,14 @@ impl Section {
     /// Resisting forces at a point; derivatives only with `TANGENT`.
     #[inline(always)]
     pub fn resistance<const TANGENT: bool>(&self, s: &Strains) -> Resistance {
+        self.resistance_carrying::<TANGENT>(s, 1.0, 0.0)
+    }
+
+    /// The same, but the derivatives are those of a cable whose axial force is `share` of what the law gives and `other` (N).
+    #[inline(always)]
+    pub fn resistance_carrying<const TANGENT: bool>(&self, s: &Strains, share: f64, other: f64) -> Resistance {
         let mut out = Resistance::zero();
-        self.axial::<TANGENT>(s, &mut out);
+        self.axial::<TANGENT>(s, share, other, &mut out);
         if self.bends() {
             self.bending::<TANGENT>(s, &mut out);
         }
@@ -164,7 +189,7 @@ impl Section {
 
     /// n = N g with g = ∂ε/∂r_p.
     #[inline(always)]
-    fn axial<const TANGENT: bool>(&self, s: &Strains, out: &mut Resistance) {
+    fn axial<const TANGENT: bool>(&self, s: &Strains, share: f64, other: f64, out: &mut Resistance) {
         let l2 = dot(&s.p, &s.p);
         // g = r_p/λ or r_p; ∂g/∂r_p = c (I − b g gᵀ).
         let l = l2.sqrt();
@@ -177,16 +202,16 @@ impl Section {
         let elastic = ea * eps;
         let n = elastic + ca * rate;
         out.n = scale(n, &g);
-        (out.g, out.elastic, out.ea) = (g, elastic, ea);
+        (out.g, out.axial, out.ea, out.c_axial) = (g, n, ea, ca);
+        // ∂ε̇/∂r_p = ∂g/∂r_p ṙ_p = c (ṙ_p − b ε̇ g).
+        out.by_p = axpy(&scale(ea - ca * c * b * rate, &g), ca * c, &s.vp);
         out.energy += elastic * eps * 0.5;
         out.power += elastic * rate;
         if TANGENT {
-            // K = g ⊗ (EA g + c_a ∂ε̇/∂r_p) + N ∂g/∂r_p,   ∂ε̇/∂r_p = ∂g/∂r_p ṙ_p = c (ṙ_p − b ε̇ g).
-            let nc = n * c;
-            let row = axpy(&scale(ea - (ca * rate + n) * c * b, &g), ca * c, &s.vp);
-            add_outer(&mut out.k_pp, 1.0, &g, &row);
-            add_identity(&mut out.k_pp, nc);
-            out.c_axial = ca;
+            // K = g ⊗ ∂N/∂r_p + N ∂g/∂r_p.
+            let turn = (share * n + other) * c;
+            add_outer(&mut out.k_pp, 1.0, &g, &axpy(&out.by_p, -turn * b, &g));
+            add_identity(&mut out.k_pp, turn);
         }
     }
 

@@ -111,6 +111,8 @@ pub struct PointLoad {
     pub ds: Mat3<f64>,
     /// ∂f/∂v.
     pub dv: Mat3<f64>,
+    /// ∂f/∂(spin).
+    pub dspin: Vec3<f64>,
 }
 
 impl Surface {
@@ -182,7 +184,7 @@ impl Surface {
         let vn = dot(&n, v);
         let Pressure { force, by_depth, by_rate } = hunt_crossley::pressure(&self.law, depth, -vn);
         let normal = weight * force;
-        let mut load = PointLoad { f: scale(normal, &n), normal, ds: zero_mat(), dv: zero_mat() };
+        let mut load = PointLoad { f: scale(normal, &n), normal, ds: zero_mat(), dv: zero_mat(), dspin: [0.0; 3] };
         let vt = dot(&t, v);
         // ∂n/∂s = (n_r/ρ) t tᵀ, so ∂δ̇/∂s = −(n_r/ρ) v_t t.
         let hoop = face.radial / rho;
@@ -212,6 +214,8 @@ impl Surface {
                 add_identity(&mut by_v, 1.0);
                 add_outer(&mut by_v, -1.0, &n, &n);
                 let mu = -coefficient * normal / speed;
+                let by_spin = scale(-rho, &t);
+                load.dspin = scale(mu, &axpy(&by_spin, -dot(&d, &by_spin), &d));
                 for (m, by) in [(&mut load.ds, &by_s), (&mut load.dv, &by_v)] {
                     let along: Vec3<f64> = std::array::from_fn(|c| (0..3).map(|r| d[r] * by[r][c]).sum());
                     for r in 0..3 {
@@ -267,6 +271,11 @@ mod tests {
                             let exact = if j < 3 { l.ds[i][j] } else { l.dv[i][j - 3] };
                             assert!((d - exact).abs() < 1e-6 * 1e5, "{surface:?} {face:?} ({i}, {j}): {d} against {exact}"); // 1e-6 of k
                         }
+                    }
+                    let at = |spin: f64| surface.load::<false>(*face, &[x[0], x[1], x[2]], &[x[3], x[4], x[5]], spin).unwrap().f;
+                    let (up, down) = (at(0.7 + 1e-7), at(0.7 - 1e-7));
+                    for i in 0..3 {
+                        assert!(((up[i] - down[i]) / 2e-7 - l.dspin[i]).abs() < 1e-6 * 1e5, "{surface:?} {face:?} spin {i}");
                     }
                 }
             }

@@ -53,14 +53,14 @@ pub fn take_shape(system: &System, t: f64, points: &[ShapePoint], u: &mut [f64],
     }
     if system.load.is_some() {
         // A load is not in the file: it points, and turns, as the cable's end does.
-        let (last, end) = (6 * (system.arc.len() - 1) + 3, u.len() - 3);
+        let (last, end) = (6 * system.arc.len() - 3, 6 * system.arc.len() + 3);
         let slope = Vector3::new(u[last], u[last + 1], u[last + 2]);
         let rate = Vector3::new(w[last], w[last + 1], w[last + 2]);
         if slope.norm() < 1e-9 {
             return Err("initial.file gives no direction at the cable's end, which the load needs; expected tx, ty, tz there".into());
         }
-        u[end..].copy_from_slice((slope / slope.norm()).as_slice());
-        w[end..].copy_from_slice((rate / slope.norm()).as_slice()); // its part along the link goes with the projection
+        u[end..end + 3].copy_from_slice((slope / slope.norm()).as_slice());
+        w[end..end + 3].copy_from_slice((rate / slope.norm()).as_slice()); // its part along the link goes with the projection
     }
     u[..3].fill(0.0);
     w[..3].fill(0.0);

@@ -204,6 +204,7 @@ pub fn lay_out(system: &System, t: f64, direction: &Vector3<f64>) -> Result<Vec<
     if system.load.is_some() {
         out.extend(Vector3::zeros().iter().chain(direction));
     }
+    out.resize(6 * system.nodes(), 0.0);
     out[..3].fill(0.0);
     Ok(out)
 }

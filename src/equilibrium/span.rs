@@ -115,6 +115,7 @@ pub fn lay_between(system: &System, t: f64, down: &Vector3<f64>) -> Result<Vec<f
     }
     let n = out.len() - 6;
     out[n..n + 3].copy_from_slice(far.as_slice());
+    out.resize(6 * system.nodes(), 0.0);
     Ok(out)
 }
 

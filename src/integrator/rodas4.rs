@@ -11,7 +11,7 @@
 //! extra terms −(M(u_i) − M) a_i, with increments A_i = W_i/g − a_i − Σ c_ij W_j / h.
 
 use super::{Problem, Stage, Trial};
-use crate::linalg::{BlockTridiagonal, Columns};
+use crate::linalg::{Bordered, Columns};
 use crate::math::lanes::{Kernel, widest};
 use crate::system::Matrices;
 
@@ -43,7 +43,7 @@ const C: [&[f64]; STAGES] = [
 /// Work space and the factors of the present step.
 #[derive(Clone, Debug, Default)]
 pub struct Rodas4 {
-    factors: BlockTridiagonal,
+    factors: Bordered,
     /// K and M for the stages' products.
     stiffness: Columns,
     mass: Columns,
@@ -61,6 +61,9 @@ pub struct Rodas4 {
 impl Rodas4 {
     /// Order of the solution.
     pub const ORDER: usize = 4;
+    /// Of the increments in the solution.
+    pub const WEIGHTS: [f64; STAGES] =
+        [1.221_224_509_226_641, 6.019_134_481_288_629, 12.537_083_329_320_87, -0.687_886_036_105_895, 1.0, 1.0];
     /// Order of the error estimate plus one: error ~ h^this.
     pub const ESTIMATE_ORDER: usize = 4;
 
@@ -68,7 +71,7 @@ impl Rodas4 {
     pub fn new(size: usize) -> Self {
         let zeros = || vec![vec![0.0; size]; STAGES];
         Self {
-            factors: BlockTridiagonal::zeros(size / 6),
+            factors: Bordered::zeros(size / 6),
             stiffness: Columns::zeros(size / 6),
             mass: Columns::zeros(size / 6),
             p: zeros(),
@@ -86,7 +89,13 @@ impl Rodas4 {
     pub fn attempt<P: Problem>(&mut self, problem: &mut P, t: f64, h: f64, from: [&[f64]; 3], m: &Matrices, force: &[f64]) -> Trial {
         let g = GAMMA * h;
         let (u0, w0, a0) = (from[0], from[1], from[2]);
-        self.factors.combine(&m.mass, &m.damping, &m.stiffness, g);
+        self.factors.core.combine(&m.mass, &m.damping, &m.stiffness, g);
+        for (k, coupling) in m.couplings.iter().enumerate() {
+            let (column, row) = self.factors.border(k, coupling.at);
+            blend(column, None, g, &[1.0], std::slice::from_ref(&coupling.damping_column));
+            blend(row, Some(&coupling.damping_row), 1.0, &[g], std::slice::from_ref(&coupling.stiffness_row));
+            row.iter_mut().for_each(|x| *x *= g);
+        }
         if let Err(e) = self.factors.factor() {
             return Trial::Singular(e.row);
         }
@@ -110,6 +119,10 @@ impl Rodas4 {
             blend(&mut self.shift, Some(&self.stage[1]), 1.0 / h, C[i], &self.p);
             blend(&mut self.scratch, None, 1.0 / h, C[i], &self.w);
             self.stiffness.multiply_add(-g, &self.shift, &mut self.rhs);
+            for coupling in &m.couplings {
+                let product: f64 = coupling.stiffness_row.iter().zip(&self.shift).map(|(k, s)| k * s).sum();
+                self.rhs[coupling.at] -= g * product;
+            }
             // M (Σ c_ij W_j / h + a_i).
             if varies {
                 add(&mut self.scratch, 1.0, &self.stage[2]);

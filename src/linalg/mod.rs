@@ -1,7 +1,9 @@
 //! Block-tridiagonal matrices of 6×6 blocks; knows no cable.
 
 mod block_tridiagonal;
+mod bordered;
 mod columns;
 
 pub use block_tridiagonal::{BLOCK, Block, BlockTridiagonal, SingularBlock};
+pub use bordered::Bordered;
 pub use columns::Columns;

@@ -89,6 +89,10 @@ pub struct SheaveOutputs {
     pub line_load_max: f64,
     /// Least line load in the contact arc, N/m.
     pub line_load_min: f64,
+    /// How far a turning sheave has turned relative to the ship, rad.
+    pub angle: f64,
+    /// Its rate, rad/s.
+    pub rate: f64,
     /// Whether anything touches.
     pub in_contact: bool,
     /// Whether the cable has climbed out of the groove.
@@ -204,7 +208,7 @@ impl Outputs {
             for x in [&mut s.normal_force, f1, f2, &mut s.tension_in, &mut s.tension_out, &mut s.wrap_angle, &mut s.contact_begin] {
                 visit(x);
             }
-            for x in [&mut s.contact_end, &mut s.turn_angle, &mut s.line_load_max, &mut s.line_load_min] {
+            for x in [&mut s.contact_end, &mut s.turn_angle, &mut s.line_load_max, &mut s.line_load_min, &mut s.angle, &mut s.rate] {
                 visit(x);
             }
             flag(&mut s.in_contact, visit);

@@ -59,7 +59,7 @@ pub fn observe(system: &System, env: &Environment, u: &[f64], w: &[f64], f: &[f6
     for (i, sheave) in out.sheaves.iter_mut().enumerate() {
         let next = arc(first + i + 1);
         sheave::sheave(system, env, u, w, first + i, here, (leaving, next.map_or(end, |a| a.0)), sheave);
-        act(&system.surfaces[first + i].centre, &sheave.force, &sheave.moment);
+        act(&system.surfaces[first + i].centre, &sheave.force, &sheave::on_ship(system, first + i, sheave));
         leaving = here.map_or(leaving, |a| a.1);
         here = next;
     }
@@ -83,7 +83,8 @@ pub fn observe(system: &System, env: &Environment, u: &[f64], w: &[f64], f: &[f6
 /// The rigid load, from the attachment's motion and its own direction.
 fn load(system: &System, u: &[f64], w: &[f64], out: &mut Outputs) {
     let Some(load) = &system.load else { return };
-    let tail = |x: &[f64]| Vector3::new(x[x.len() - 3], x[x.len() - 2], x[x.len() - 1]);
+    let at = 6 * system.arc.len() + 3;
+    let tail = |x: &[f64]| Vector3::new(x[at], x[at + 1], x[at + 2]);
     let (n, turning) = (tail(u), tail(w));
     out.load.position = out.body.position + n * load.gravity;
     out.load.velocity = out.body.velocity + turning * load.gravity;
@@ -150,18 +151,36 @@ fn end_curvature(system: &System, u: &[f64], w: &[f64], e: usize, end: f64) -> f
 
 /// N + ½EIκ² at arc length `s`: conserved along a frictionless bend, the pull of the free span.
 pub fn span_tension(system: &System, u: &[f64], w: &[f64], s: f64) -> f64 {
-    let count = system.chain.lengths.len();
-    let at_node = |j: usize| {
-        let left = (j > 0).then(|| end_curvature(system, u, w, j - 1, 1.0));
-        let right = (j < count).then(|| end_curvature(system, u, w, j, 0.0));
-        let k = match (left, right) {
-            (Some(a), Some(b)) => 0.5 * (a + b),
-            (a, b) => a.or(b).unwrap_or(0.0),
-        };
-        nodal_tension(system, u, j) + 0.5 * system.chain.section.ei * k * k
-    };
     let (e, x) = system.element_at(s);
-    at_node(e) * (1.0 - x) + at_node(e + 1) * x
+    nodal_pull(system, u, w, e) * (1.0 - x) + nodal_pull(system, u, w, e + 1) * x
+}
+
+/// The same where friction acts on one side of `s`, beyond which it leads nowhere: from the two nodes on the other side, those before `s` or
+/// those after it; within `limit` (m of arc length), where the next contact is.
+pub fn span_tension_beside(system: &System, u: &[f64], w: &[f64], s: f64, before: bool, limit: f64) -> f64 {
+    let e = system.element_at(s).0;
+    let (near, far) = if before { (Some(e), e.checked_sub(1)) } else { (Some(e + 1), Some(e + 2)) };
+    let free = |j: &usize| system.arc.get(*j).is_some_and(|at| if before { *at >= limit } else { *at <= limit });
+    let pull = |j: usize| nodal_pull(system, u, w, j);
+    match (near.filter(free), far.filter(free)) {
+        (Some(a), Some(b)) => {
+            let x = (s - system.arc[a]) / (system.arc[b] - system.arc[a]);
+            pull(a) * (1.0 - x) + pull(b) * x
+        }
+        (Some(a), None) => pull(a),
+        _ => span_tension(system, u, w, s),
+    }
+}
+
+/// N + ½EIκ² at a node.
+fn nodal_pull(system: &System, u: &[f64], w: &[f64], j: usize) -> f64 {
+    let left = (j > 0).then(|| end_curvature(system, u, w, j - 1, 1.0));
+    let right = (j < system.chain.lengths.len()).then(|| end_curvature(system, u, w, j, 0.0));
+    let k = match (left, right) {
+        (Some(a), Some(b)) => 0.5 * (a + b),
+        (a, b) => a.or(b).unwrap_or(0.0),
+    };
+    nodal_tension(system, u, j) + 0.5 * system.chain.section.ei * k * k
 }
 
 /// Unit tangent at arc length `s`, world axes.

@@ -1,7 +1,7 @@
 //! What a sheave feels, and where the cable lies on it.
 
 use super::SheaveOutputs;
-use super::observe::{span_tension, tangent_at};
+use super::observe::{span_tension, span_tension_beside, tangent_at};
 use crate::contact::surface::Surface;
 use crate::math::lanes::{Vec3, dot, mat_vec};
 use crate::system::contact::{SurfaceFrame, near, touching};
@@ -46,6 +46,14 @@ pub fn contact_arc(system: &System, env: &Environment, u: &[f64], index: usize) 
     arc
 }
 
+/// Moment on the ship about the centre of the sheave that is surface `index`: that on the sheave, but about its axis only what the bearing
+/// of a turning sheave passes on.
+pub fn on_ship(system: &System, index: usize, out: &SheaveOutputs) -> Vector3<f64> {
+    let Some(turning) = system.turning.iter().find(|s| s.surface == index) else { return out.moment };
+    let axis = Vector3::from(system.surfaces[index].basis[0]);
+    out.moment - axis * (out.moment.dot(&axis) + turning.bearing(out.rate).0)
+}
+
 /// Fills `out` for the sheave that is surface `index` and touched along `arc`; `neighbours` are where contact ends before it and begins after
 /// it (or the cable's ends).
 pub fn sheave(
@@ -68,12 +76,18 @@ pub fn sheave(
         flank_force: load.faces,
         ..SheaveOutputs::default()
     };
+    if let Some(turning) = system.turning.iter().find(|s| s.surface == index) {
+        (out.angle, out.rate) = (u[turning.at], w[turning.at]);
+    }
     let frame = SurfaceFrame::new(surface, env, true);
     out.out_of_groove = climbed_out(system, surface, &frame, u);
     let Some((begin, end)) = arc else { return };
     out.in_contact = true;
-    out.tension_in = span_tension(system, u, w, begin);
-    out.tension_out = span_tension(system, u, w, end);
+    [out.tension_in, out.tension_out] = match surface.friction {
+        None => [begin, end].map(|s| span_tension(system, u, w, s)),
+        Some(_) => [(begin, true, neighbours.0), (end, false, neighbours.1)]
+            .map(|(s, before, limit)| span_tension_beside(system, u, w, s, before, limit)),
+    };
     // Angles, followed along the arc so that more than half a turn is counted right.
     let angle = |p: &Vec3<f64>| p[2].atan2(p[1]);
     let place = |s: f64| {

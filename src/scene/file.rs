@@ -262,6 +262,10 @@ struct SheaveTable {
     contact: Contact,
     friction: f64,
     inertia: Option<f64>,
+    #[serde(default)]
+    bearing_friction: f64,
+    #[serde(default)]
+    bearing_damping: f64,
 }
 
 #[derive(PartialEq, Eq, Deserialize)]
@@ -387,6 +391,8 @@ impl SheaveTable {
             contact: self.contact,
             friction: self.friction,
             inertia: self.inertia,
+            bearing_friction: self.bearing_friction,
+            bearing_damping: self.bearing_damping,
         }
     }
 }

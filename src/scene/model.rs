@@ -274,6 +274,10 @@ pub struct Sheave {
     pub friction: f64,
     /// Moment of inertia about the axis, kg·m²; `None`: the sheave does not turn.
     pub inertia: Option<f64>,
+    /// Coulomb friction of the bearing, N·m.
+    pub bearing_friction: f64,
+    /// Its viscous friction, N·m·s.
+    pub bearing_damping: f64,
 }
 
 /// A lump at the far end.

@@ -19,6 +19,7 @@ pub(super) fn check(tree: &Table, problems: &mut Problems) {
     viscosity(tree, problems);
     noise(tree, problems);
     setpoint(tree, problems);
+    turning_sheaves(tree, problems);
     initial(tree, problems);
     if let (Some(least), Some(greatest)) = (real(tree, "solver.step_min"), real(tree, "solver.step_max"))
         && least > greatest
@@ -153,6 +154,20 @@ fn noise(tree: &Table, problems: &mut Problems) {
                 "found {cutoff}; expected at least {low} and less than {high} Hz, a thousandth and half of fluid.current.noise.sample_rate"
             );
             problems.add_once("fluid.current.noise.cutoff", message);
+        }
+    }
+}
+
+/// Nothing but friction turns a sheave.
+fn turning_sheaves(tree: &Table, problems: &mut Problems) {
+    let Some(Value::Array(sheaves)) = tree.get("sheave") else { return };
+    for (i, sheave) in sheaves.iter().enumerate() {
+        let number = |key: &str| sheave.get(key).and_then(Value::as_float);
+        if number("inertia").is_some() && number("friction").is_none_or(|f| f <= 0.0) {
+            problems.add_once(
+                &format!("sheave[{}].inertia", i + 1),
+                "given without friction; expected sheave.friction above 0, since nothing else lets the cable turn the sheave",
+            );
         }
     }
 }

@@ -114,13 +114,43 @@ type Forces = [[f64; 3]; 4];
 struct Tangent {
     stiffness: [[f64; 12]; 12],
     damping: [[f64; 12]; 12],
+    /// The same of the moment T that turns the surface: rows of K and D, column and corner of D.
+    moment_stiffness: [f64; 12],
+    moment_damping: [f64; 12],
+    spin_column: [f64; 12],
+    spin_corner: f64,
+}
+
+impl Tangent {
+    const NONE: Self = Self {
+        stiffness: [[0.0; 12]; 12],
+        damping: [[0.0; 12]; 12],
+        moment_stiffness: [0.0; 12],
+        moment_damping: [0.0; 12],
+        spin_column: [0.0; 12],
+        spin_corner: 0.0,
+    };
+}
+
+/// How a surface turns.
+#[derive(Clone, Copy, Default)]
+struct Turning {
+    /// rad/s relative to the ship.
+    spin: f64,
+    /// Which of the couplings.
+    coupling: Option<usize>,
 }
 
 impl System {
     /// Overwrites the contact forces; with `TANGENT` adds to the matrices.
     pub(super) fn contact<const TANGENT: bool>(&mut self, env: &Environment, u: &[f64], w: &[f64], m: &mut Matrices) {
         self.contact_forces.fill([0.0; 12]);
-        for (surface, total) in self.surfaces.iter().zip(&mut self.surface_loads) {
+        for index in 0..self.surfaces.len() {
+            let turning = Turning {
+                spin: self.spin(index, w),
+                coupling: if self.frozen { None } else { self.turning.iter().position(|s| s.surface == index) },
+            };
+            let (surface, total) = (&self.surfaces[index], &mut self.surface_loads[index]);
             *total = SurfaceLoad::default();
             let frame = SurfaceFrame::new(surface, env, self.frozen);
             for (e, &l) in self.chain.lengths.iter().enumerate() {
@@ -136,10 +166,9 @@ impl System {
                 let mut touched = false;
                 touching(surface, &curve, e, |side, face, arc| {
                     touched = true;
-                    push(surface, side, face, &arc, &curve, velocity, l, &mut forces, total);
+                    push(surface, side, face, &arc, &curve, velocity, turning.spin, l, &mut forces, total);
                     if TANGENT {
-                        let tangent = tangent.get_or_insert(Tangent { stiffness: [[0.0; 12]; 12], damping: [[0.0; 12]; 12] });
-                        tangent.arc(surface, face, &arc, &curve, velocity, &frame.turn, l);
+                        tangent.get_or_insert(Tangent::NONE).arc(surface, face, &arc, &curve, velocity, &turning, &frame.turn, l);
                     }
                 });
                 if touched {
@@ -154,6 +183,21 @@ impl System {
                     add_turned(&mut m.stiffness, e, &frame.rotation, &tangent.stiffness);
                     if surface.is_damped() {
                         add_turned(&mut m.damping, e, &frame.rotation, &tangent.damping);
+                    }
+                    if let Some(k) = turning.coupling {
+                        let coupling = &mut m.couplings[k];
+                        m.damping.diagonal[coupling.at / 6][coupling.at % 6][coupling.at % 6] += tangent.spin_corner;
+                        for (to, from) in [
+                            (&mut coupling.damping_column, &tangent.spin_column),
+                            (&mut coupling.damping_row, &tangent.moment_damping),
+                            (&mut coupling.stiffness_row, &tangent.moment_stiffness),
+                        ] {
+                            for i in 0..4 {
+                                for c in 0..3 {
+                                    to[6 * e + 3 * i + c] += (0..3).map(|r| frame.rotation[r][c] * from[3 * i + r]).sum::<f64>();
+                                }
+                            }
+                        }
                     }
                 }
             }
@@ -170,6 +214,7 @@ fn push(
     arc: &Arc,
     curve: &Cubic,
     velocity: Option<&Cubic>,
+    spin: f64,
     l: f64,
     forces: &mut Forces,
     total: &mut SurfaceLoad,
@@ -178,7 +223,7 @@ fn push(
     for (position, weight) in GAUSS5 {
         let x = arc.from + length * position;
         let s = curve.at(x);
-        let Some(load) = surface.load::<false>(face, &s, &velocity.map_or([0.0; 3], |v| v.at(x)), 0.0) else { continue };
+        let Some(load) = surface.load::<false>(face, &s, &velocity.map_or([0.0; 3], |v| v.at(x)), spin) else { continue };
         let shape = shape::value(x, l);
         let wl = weight * length * l;
         let f = load.f.map(|f| wl * f);
@@ -195,14 +240,26 @@ fn push(
 
 impl Tangent {
     /// Adds an arc.
-    fn arc(&mut self, surface: &Surface, face: Face, arc: &Arc, curve: &Cubic, velocity: Option<&Cubic>, turn: &Mat3<f64>, l: f64) {
+    fn arc(
+        &mut self,
+        surface: &Surface,
+        face: Face,
+        arc: &Arc,
+        curve: &Cubic,
+        velocity: Option<&Cubic>,
+        turning: &Turning,
+        turn: &Mat3<f64>,
+        l: f64,
+    ) {
         let length = arc.to - arc.from;
         let damped = surface.is_damped();
         // ∂Q/∂from and ∂Q/∂to of the rule, points moving along.
         let mut by_ends = [[0.0; 12]; 2];
+        let mut moment_by_ends = [0.0; 2];
         for (position, weight) in GAUSS5 {
             let x = arc.from + length * position;
-            let Some(load) = surface.load::<true>(face, &curve.at(x), &velocity.map_or([0.0; 3], |v| v.at(x)), 0.0) else { continue };
+            let s = curve.at(x);
+            let Some(load) = surface.load::<true>(face, &s, &velocity.map_or([0.0; 3], |v| v.at(x)), turning.spin) else { continue };
             let shape = shape::value(x, l);
             let wl = weight * length * l;
             let mut ds = load.ds;
@@ -230,6 +287,22 @@ impl Tangent {
                     }
                 }
             }
+            // T = s₂ f₁ − s₁ f₂ per length, with its derivatives.
+            let moment = s[2] * load.f[1] - s[1] * load.f[2];
+            let mut moment_by_s: Vec3<f64> = std::array::from_fn(|c| s[2] * ds[1][c] - s[1] * ds[2][c]);
+            moment_by_s[2] += load.f[1];
+            moment_by_s[1] -= load.f[2];
+            let moment_by_v: Vec3<f64> = std::array::from_fn(|c| s[2] * load.dv[1][c] - s[1] * load.dv[2][c]);
+            if turning.coupling.is_some() {
+                self.spin_corner -= wl * (s[2] * load.dspin[1] - s[1] * load.dspin[2]);
+                for i in 0..4 {
+                    for c in 0..3 {
+                        self.moment_stiffness[3 * i + c] -= wl * shape[i] * moment_by_s[c];
+                        self.moment_damping[3 * i + c] -= wl * shape[i] * moment_by_v[c];
+                        self.spin_column[3 * i + c] -= wl * shape[i] * load.dspin[c];
+                    }
+                }
+            }
             if arc.moving != [false, false] {
                 // d/dξ of sᵢ f.
                 let mut fx = mat_vec(&load.ds, &curve.slope(x));
@@ -237,6 +310,10 @@ impl Tangent {
                     fx = axpy(&fx, 1.0, &mat_vec(&load.dv, &v.slope(x)));
                 }
                 let slope = shape::slope(x, 1.0 / l);
+                let along = curve.slope(x);
+                let moment_x = along[2] * load.f[1] + s[2] * fx[1] - along[1] * load.f[2] - s[1] * fx[2];
+                moment_by_ends[0] += weight * l * (length * moment_x * (1.0 - position) - moment);
+                moment_by_ends[1] += weight * l * (length * moment_x * position + moment);
                 for k in 0..12 {
                     let (i, c) = (k / 3, k % 3);
                     let (g, rate) = (shape[i] * load.f[c], l * slope[i] * load.f[c] + shape[i] * fx[c]);
@@ -260,6 +337,7 @@ impl Tangent {
             let shape = shape::value(x, l);
             for j in 0..12 {
                 let rate = -shape[j / 3] * n[j % 3] / slope;
+                self.moment_stiffness[j] -= moment_by_ends[end] * rate;
                 for i in 0..12 {
                     self.stiffness[i][j] -= by_ends[end][i] * rate;
                 }

@@ -10,7 +10,7 @@ use crate::cable::shape;
 use crate::hydro::line::{LineInWater, LinePoint, Stream};
 use crate::integrator::Stage;
 use crate::linalg::BlockTridiagonal;
-use crate::math::lanes::{Kernel, Lanes, Vec3, dot, lane, scale, set_lane, widest};
+use crate::math::lanes::{Kernel, Lanes, Vec3, axpy, dot, lane, scale, set_lane, widest};
 use crate::math::quadrature::GAUSS3;
 
 /// Elements side by side.
@@ -78,8 +78,32 @@ fn gather_lane(x: &[f64], e: usize, length: f64, l: usize, to: &mut [Rows3; 4]) 
 /// Slots and differences of slots that r_p depends on: r(L) − r(0), L r_p(0), L r_p(L).
 const SPANS: usize = 3;
 
-/// Axial forces within a step, at the Gauss points of elements side by side.
+/// Where the axial forces come from.
+#[derive(Clone, Copy, Debug)]
+pub enum Axially<'a> {
+    /// From the strains; with a tangent the unknowns begin anew from there.
+    Law,
+    /// A step begins with the unknowns as they are (tangents only; the forces themselves are those of the law).
+    Begin,
+    /// From the unknowns, at a stage of the step that has begun.
+    Stage(Stage<'a>),
+}
+
+/// Axial unknowns at the Gauss points of elements side by side.
 pub type Axial = [AxialUnknown<LANES>; 3];
+
+/// N of every Gauss point, element by element.
+pub fn axial_forces(axial: &[Axial]) -> impl Iterator<Item = &f64> {
+    axial.iter().flat_map(|points| (0..LANES).flat_map(move |l| points.iter().map(move |p| &p.now.0[l])))
+}
+
+/// The same, to be set.
+pub fn axial_forces_mut(axial: &mut [Axial]) -> impl Iterator<Item = &mut f64> {
+    axial.iter_mut().flat_map(|[a, b, c]| {
+        let points = a.now.0.iter_mut().zip(&mut b.now.0).zip(&mut c.now.0);
+        points.flat_map(|((a, b), c)| [a, b, c])
+    })
+}
 
 /// A Gauss point of the element of unit length, on whose slots (r(0), L r_p(0), r(L), L r_p(L)) the shape functions are pure numbers.
 #[derive(Clone, Copy)]
@@ -162,7 +186,7 @@ struct Pass<'a, const TANGENT: bool> {
     u: &'a [f64],
     w: &'a [f64],
     a: Option<&'a [f64]>,
-    stage: Option<Stage<'a>>,
+    axially: Axially<'a>,
     axial: &'a mut [Axial],
     forces: &'a mut [[f64; 12]],
     matrices: &'a mut Matrices,
@@ -173,10 +197,10 @@ impl<const TANGENT: bool> Kernel for Pass<'_, TANGENT> {
 
     #[inline(always)]
     fn run(self) -> Tally {
-        let Self { chain, env, u, w, a, stage, axial, forces, matrices } = self;
-        match stage {
-            Some(stage) => chain.pass_with::<TANGENT, true>(env, u, w, a, stage, axial, forces, matrices),
-            None => chain.pass_with::<TANGENT, false>(env, u, w, a, Stage { index: 0, weights: &[] }, axial, forces, matrices),
+        let Self { chain, env, u, w, a, axially, axial, forces, matrices } = self;
+        match axially {
+            Axially::Stage(_) => chain.pass_with::<TANGENT, true>(env, u, w, a, axially, axial, forces, matrices),
+            _ => chain.pass_with::<TANGENT, false>(env, u, w, a, axially, axial, forces, matrices),
         }
     }
 }
@@ -203,20 +227,20 @@ impl Chain {
     }
 
     /// Overwrites `forces` (12 per element: all that acts on the element's own slots, inertia included) and, with `TANGENT`, adds M, D and K of
-    /// F − M(u) a to `matrices`. `a`: acceleration relative to the first node; without it no inertia relative to the first node. At a `stage`
-    /// of the step that began with the last tangent the forces are those of the axial unknowns.
+    /// F − M(u) a to `matrices`. `a`: acceleration relative to the first node; without it no inertia relative to the first node. `axially`:
+    /// see there.
     pub fn pass<const TANGENT: bool>(
         &self,
         env: &Environment,
         u: &[f64],
         w: &[f64],
         a: Option<&[f64]>,
-        stage: Option<Stage>,
+        axially: Axially,
         axial: &mut [Axial],
         forces: &mut [[f64; 12]],
         matrices: &mut Matrices,
     ) -> Tally {
-        widest(Pass::<TANGENT> { chain: self, env, u, w, a, stage, axial, forces, matrices })
+        widest(Pass::<TANGENT> { chain: self, env, u, w, a, axially, axial, forces, matrices })
     }
 
     #[inline(always)]
@@ -226,7 +250,7 @@ impl Chain {
         u: &[f64],
         w: &[f64],
         a: Option<&[f64]>,
-        stage: Stage,
+        axially: Axially,
         axial: &mut [Axial],
         forces: &mut [[f64; 12]],
         matrices: &mut Matrices,
@@ -239,7 +263,7 @@ impl Chain {
             let lanes = LANES.min(self.lengths.len() - first);
             self.gather_batch(env, first, u, w, a, &mut batch);
             for ((station, slopes), axial) in stations.iter().zip(&mut slopes).zip(&mut axial[first / LANES]) {
-                self.resist::<TANGENT, STAGE>(&mut batch, station, slopes, &stage, axial);
+                self.resist::<TANGENT, STAGE>(&mut batch, station, slopes, axially, axial);
             }
             let wet = batch.wet.0.iter().any(|x| *x > 0.0);
             if let Some(water) = &self.water
@@ -272,6 +296,29 @@ impl Chain {
             }
         }
         tally
+    }
+
+    /// The step that began with the last tangent ends at (u, w), of the stages' increments weighted so.
+    pub fn accept(&self, u: &[f64], w: &[f64], weights: &[f64], axial: &mut [Axial]) {
+        let stations = GAUSS3.map(Station::new);
+        for (k, axial) in axial.iter_mut().enumerate() {
+            for (station, axial) in stations.iter().zip(axial) {
+                axial.enter(weights);
+                for l in 0..LANES.min(self.lengths.len() - k * LANES) {
+                    let e = k * LANES + l;
+                    let slope = |x: &[f64]| {
+                        let q = gather(x, e);
+                        along(
+                            &station.b,
+                            &[axpy(&q[2], -1.0, &q[0]), scale(self.lengths[e], &q[1]), scale(self.lengths[e], &q[3])],
+                            1.0 / self.lengths[e],
+                        )
+                    };
+                    let strains = Strains { p: slope(u), pp: [0.0; 3], vp: slope(w), vpp: [0.0; 3] };
+                    axial.end(l, &self.section.resistance::<false>(&strains), &strains);
+                }
+            }
+        }
     }
 
     /// Fills a batch with the elements from `first` on.
@@ -309,24 +356,29 @@ impl Chain {
         batch: &mut Batch,
         station: &Station,
         slopes: &mut Slopes,
-        stage: &Stage,
+        axially: Axially,
         axial: &mut AxialUnknown<LANES>,
     ) {
         let section = self.section;
         let Station { weight, b, d, .. } = *station;
+        let stage = match axially {
+            Axially::Stage(stage) => stage,
+            _ => Stage { index: 0, weights: &[] },
+        };
         if STAGE {
-            axial.enter(stage);
+            axial.enter(stage.weights);
         }
+        let anew = if matches!(axially, Axially::Law) { 1.0 } else { 0.0 };
         for l in 0..LANES {
             let i = batch.inverse.0[l];
             let (u, w) = (spans(&batch.u, l), spans(&batch.w, l));
             let strains = Strains { p: along(&b, &u, i), pp: along(&d, &u, i * i), vp: along(&b, &w, i), vpp: along(&d, &w, i * i) };
-            let mut r = section.resistance::<TANGENT>(&strains);
-            if STAGE {
-                r.n = axial.force(l, stage.index, &r, &strains.p);
-            }
+            let mut r = section.resistance_carrying::<TANGENT>(&strains, anew, if TANGENT { (1.0 - anew) * axial.now.0[l] } else { 0.0 });
             if TANGENT {
-                axial.begin(l, &r, &strains.p);
+                axial.begin(l, &r, &strains, anew);
+            }
+            if STAGE {
+                r.n = axial.force(l, stage.index, &r, &strains);
             }
             let wl = weight * batch.length.0[l];
             batch.elastic.0[l] += wl * r.energy;

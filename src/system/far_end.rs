@@ -76,7 +76,7 @@ impl System {
     /// The state reached at `t`, brought onto everything that is prescribed; no sub-step is under way any more.
     pub fn reach(&mut self, t: f64, u: &mut [f64], w: &mut [f64], a: &mut [f64]) {
         if self.load.is_some() {
-            super::load::RigidLoad::project(u, w, a);
+            super::load::RigidLoad::project(6 * self.arc.len() + 3, u, w, a);
         }
         if let Some(end) = self.far_end {
             self.far_end = Some(FarEnd::new(end.position));

@@ -36,10 +36,9 @@ impl From<&Load> for RigidLoad {
 }
 
 impl RigidLoad {
-    /// Brings n, ṅ, n̈ back onto the constraint.
-    pub fn project(u: &mut [f64], w: &mut [f64], a: &mut [f64]) {
-        let at = u.len() - 3;
-        let (n, v, a) = (&mut u[at..], &mut w[at..], &mut a[at..]);
+    /// Brings n, ṅ, n̈, which stand at `at`, back onto the constraint.
+    pub fn project(at: usize, u: &mut [f64], w: &mut [f64], a: &mut [f64]) {
+        let (n, v, a) = (&mut u[at..at + 3], &mut w[at..at + 3], &mut a[at..at + 3]);
         let i = 1.0 / n.iter().map(|x| x * x).sum::<f64>().sqrt();
         n.iter_mut().for_each(|x| *x *= i);
         let along: f64 = n.iter().zip(&*v).map(|(n, v)| n * v).sum();
@@ -48,12 +47,6 @@ impl RigidLoad {
         let wanted = -v.iter().map(|v| v * v).sum::<f64>();
         a.iter_mut().zip(&*n).for_each(|(a, n)| *a += (wanted - along) * n);
     }
-}
-
-/// Where the load stands in the vectors.
-pub(super) fn direction(x: &[f64]) -> Vec3<f64> {
-    let at = x.len() - 3;
-    [x[at], x[at + 1], x[at + 2]]
 }
 
 impl System {
@@ -70,6 +63,7 @@ impl System {
         let Some(load) = &self.load else { return };
         let node = self.arc.len() - 1;
         let at = 6 * node;
+        let direction = |x: &[f64]| [x[at + 9], x[at + 10], x[at + 11]];
         let (n, v) = (direction(u), direction(w));
         let (mass, arm, spin) = (load.mass, load.mass * load.gravity, load.mass * load.inertia * load.inertia);
         let vp = [w[at], w[at + 1], w[at + 2]];

@@ -12,12 +12,48 @@ pub struct Matrices {
     pub damping: BlockTridiagonal,
     /// N/m.
     pub stiffness: BlockTridiagonal,
+    /// What couples single unknowns with all others.
+    pub couplings: Vec<Coupling>,
+}
+
+/// Entries of D and K that couple one unknown with the cable's.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Coupling {
+    /// Its place.
+    pub at: usize,
+    /// Its column of D.
+    pub damping_column: Vec<f64>,
+    /// Its row of D.
+    pub damping_row: Vec<f64>,
+    /// Its row of K.
+    pub stiffness_row: Vec<f64>,
 }
 
 impl Matrices {
     /// All zero, for `n` nodes.
     pub fn zeros(n: usize) -> Self {
-        Self { mass: BlockTridiagonal::zeros(n), damping: BlockTridiagonal::zeros(n), stiffness: BlockTridiagonal::zeros(n) }
+        Self {
+            mass: BlockTridiagonal::zeros(n),
+            damping: BlockTridiagonal::zeros(n),
+            stiffness: BlockTridiagonal::zeros(n),
+            couplings: vec![],
+        }
+    }
+
+    /// Sets all entries to zero, with couplings of the unknowns `at`.
+    pub fn clear(&mut self, at: impl ExactSizeIterator<Item = usize>) {
+        for b in [&mut self.mass, &mut self.damping, &mut self.stiffness] {
+            b.clear();
+        }
+        let n = 6 * self.mass.len();
+        self.couplings.resize_with(at.len(), Coupling::default);
+        for (c, at) in self.couplings.iter_mut().zip(at) {
+            c.at = at;
+            for x in [&mut c.damping_column, &mut c.damping_row, &mut c.stiffness_row] {
+                x.clear();
+                x.resize(n, 0.0);
+            }
+        }
     }
 }
 

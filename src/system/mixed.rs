@@ -7,20 +7,22 @@
 //! point is an algebraic unknown,
 //!
 //! ```text
-//! M(u) ü = F(t, u, u̇, N),   0 = σ(ε(u)) − N,
+//! M(u) ü = F(t, u, u̇, N),   0 = σ(ε) + c_a ε̇ − N =: Σ(u, u̇) − N,
 //! ```
 //!
 //! integrated by the same method, which keeps its order for such systems of index 1 (E. Hairer & G. Wanner, Solving Ordinary Differential
 //! Equations II, VI.4). Each N is eliminated where it stands: the step's matrix stays what it was, and the force at stage i becomes
 //!
 //! ```text
-//! N_i g_i + (σ_i − N_i) g_0  in place of  σ_i g_i,   N_i = N_0 + EA g_0·(r_p,i − r_p,0) + Σ_{j<i} a_ij (σ_j − N_j),   g = ∂ε/∂r_p.
+//! N_i g_i + (Σ_i − N_i) g_0  in place of  Σ_i g_i,   N_i = N_0 + Σ'·(y_i − y_0) + Σ_{j<i} a_ij (Σ_j − N_j),
+//!
+//! g = ∂ε/∂r_p, and Σ'·y the derivative at the step's begin along the change of (r_p, ṙ_p).
 //! ```
 //!
-//! N begins each step at σ, so nothing is kept between steps.
+//! N is part of the state, so that a strain's error, EA times which may be many times the tension, is not taken for a force; each step brings
+//! it nearer to Σ again.
 
-use crate::cable::section::Resistance;
-use crate::integrator::Stage;
+use crate::cable::section::{Resistance, Strains};
 use crate::math::lanes::{Lanes, Vec3, axpy, dot, lane, set_lane};
 
 /// Most stages that a method may have.
@@ -29,49 +31,79 @@ const STAGES: usize = 6;
 /// N of one Gauss point of `W` elements side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxialUnknown<const W: usize> {
+    /// N_0, N.
+    pub now: Lanes<W>,
     /// g_0.
     g: [Lanes<W>; 3],
-    /// σ_0 − EA g_0·r_p,0 and EA, N.
-    offset: Lanes<W>,
+    /// ∂Σ/∂r_p and c_a; dσ/dε, N.
+    by_p: [Lanes<W>; 3],
+    damping: Lanes<W>,
     ea: Lanes<W>,
-    /// σ_j − N_j, N.
+    /// N_0 − Σ'·y_0, N.
+    offset: Lanes<W>,
+    /// Σ_j − N_j, N.
     gaps: [Lanes<W>; STAGES],
-    /// Σ_{j<i} a_ij (σ_j − N_j) of the stage at hand, N.
+    /// Σ_{j<i} a_ij (Σ_j − N_j) of the stage at hand, N.
     drift: Lanes<W>,
 }
 
 impl<const W: usize> AxialUnknown<W> {
     /// Before any step.
-    pub const NONE: Self = Self { g: [Lanes::ZERO; 3], offset: Lanes::ZERO, ea: Lanes::ZERO, gaps: [Lanes::ZERO; STAGES], drift: Lanes::ZERO };
+    pub const NONE: Self = Self {
+        now: Lanes::ZERO,
+        g: [Lanes::ZERO; 3],
+        by_p: [Lanes::ZERO; 3],
+        damping: Lanes::ZERO,
+        ea: Lanes::ZERO,
+        offset: Lanes::ZERO,
+        gaps: [Lanes::ZERO; STAGES],
+        drift: Lanes::ZERO,
+    };
 
-    /// A step begins with element `l` at r_p = `p`.
+    /// A step begins with element `l` in the shape `s`, where the law gives `r`: with N = Σ if `anew` is 1, as it is if 0.
     #[inline(always)]
-    pub fn begin(&mut self, l: usize, r: &Resistance, p: &Vec3<f64>) {
+    pub fn begin(&mut self, l: usize, r: &Resistance, s: &Strains, anew: f64) {
+        let now = anew * r.axial + (1.0 - anew) * self.now.0[l];
+        self.now.0[l] = now;
+        self.gaps[0].0[l] = r.axial - now;
         set_lane(&mut self.g, l, r.g);
-        self.offset.0[l] = r.elastic - r.ea * dot(&r.g, p);
+        set_lane(&mut self.by_p, l, r.by_p);
+        self.damping.0[l] = r.c_axial;
         self.ea.0[l] = r.ea;
-        self.gaps[0].0[l] = 0.0;
+        self.offset.0[l] = now - dot(&r.by_p, &s.p) - r.c_axial * dot(&r.g, &s.vp);
     }
 
-    /// A stage begins.
+    /// A stage begins, of these weights.
     #[inline(always)]
-    pub fn enter(&mut self, stage: &Stage) {
+    pub fn enter(&mut self, weights: &[f64]) {
         self.drift = Lanes::ZERO;
-        for (weight, gap) in stage.weights.iter().zip(&self.gaps) {
+        for (weight, gap) in weights.iter().zip(&self.gaps) {
             for l in 0..W {
                 self.drift.0[l] += weight * gap.0[l];
             }
         }
     }
 
+    /// N of element `l` at a stage.
+    #[inline(always)]
+    fn carried(&self, l: usize, s: &Strains) -> f64 {
+        let rate = dot(&lane(&self.g, l), &s.vp);
+        self.offset.0[l] + dot(&lane(&self.by_p, l), &s.p) + self.damping.0[l] * rate + self.drift.0[l]
+    }
+
     /// The force of element `l` at a stage, given that of the law.
     #[inline(always)]
-    pub fn force(&mut self, l: usize, stage: usize, r: &Resistance, p: &Vec3<f64>) -> Vec3<f64> {
-        let g = lane(&self.g, l);
+    pub fn force(&mut self, l: usize, stage: usize, r: &Resistance, s: &Strains) -> Vec3<f64> {
         // Where the law has switched between taut and slack its slope at the step's begin says nothing.
         let same = if r.ea == self.ea.0[l] { 1.0 } else { 0.0 };
-        let gap = same * (r.elastic - (self.offset.0[l] + self.ea.0[l] * dot(&g, p) + self.drift.0[l]));
+        let gap = same * (r.axial - self.carried(l, s));
         self.gaps[stage].0[l] = gap;
-        axpy(&axpy(&r.n, -gap, &r.g), gap, &g)
+        axpy(&axpy(&r.n, -gap, &r.g), gap, &lane(&self.g, l))
+    }
+
+    /// The step ends with element `l` in the shape `s`, where the law gives `r`; its weights were entered as a stage's.
+    #[inline(always)]
+    pub fn end(&mut self, l: usize, r: &Resistance, s: &Strains) {
+        self.now.0[l] = if r.ea == self.ea.0[l] && r.ea > 0.0 { self.carried(l, s) } else { r.axial };
     }
 }

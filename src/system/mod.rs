@@ -11,16 +11,18 @@ mod load;
 mod matrices;
 mod mixed;
 mod points;
+mod turning;
 mod wetting;
 
 pub use contact::SurfaceLoad;
+use elements::{Axial, Axially};
 pub use elements::{Chain, Tally, Wetness, gather};
-use elements::Axial;
 pub use environment::Environment;
 pub use far_end::FarEnd;
 pub use load::RigidLoad;
-pub use matrices::Matrices;
+pub use matrices::{Coupling, Matrices};
 pub use points::ElementPoint;
+pub use turning::TurningSheave;
 
 use crate::cable::section::Section;
 use crate::contact::surface::{Friction, Groove, Surface};
@@ -126,6 +128,8 @@ pub struct System {
     pub over: Vec<bool>,
     /// What each of them feels, of the last evaluation.
     pub surface_loads: Vec<SurfaceLoad>,
+    /// Those that turn.
+    pub turning: Vec<TurningSheave>,
     /// Forces of drum and sheaves on the elements' slots, of the last evaluation.
     pub contact_forces: Vec<[f64; 12]>,
     /// Force of everything outside the cable on the last node, of the last evaluation, N.
@@ -136,6 +140,8 @@ pub struct System {
     pub tally: Tally,
     /// Static evaluation: the boundary's velocity is seen by the water, its acceleration and the winch's rate are not.
     pub frozen: bool,
+    /// Whether a tangent begins a step: the axial forces are then unknowns of the state and no longer given by the shape alone.
+    pub keeps_axial: bool,
     gravity: f64,
     /// Tolerable velocity error in the mass norm, kg·m²/s².
     tolerance: f64,
@@ -189,11 +195,13 @@ impl System {
             names: scene.sheaves.iter().map(|s| s.name.clone()).collect(),
             over: scene.sheaves.iter().map(|s| s.over).collect(),
             surface_loads: vec![SurfaceLoad::default(); surfaces.len()],
+            turning: TurningSheave::all(scene, surfaces.len(), n + 1 + usize::from(scene.load.is_some())),
             surfaces,
             lump_force: [0.0; 3],
             clamp_force: [0.0; 3],
             tally: Tally::default(),
             frozen: false,
+            keeps_axial: false,
             gravity: scene.gravity,
             tolerance: 1.0,
             matrices: Matrices::default(),
@@ -201,9 +209,9 @@ impl System {
         }
     }
 
-    /// Number of blocks of six unknowns: the cable's nodes, and the load's.
+    /// Number of blocks of six unknowns: the cable's nodes, the load's, and those of turning sheaves.
     pub fn nodes(&self) -> usize {
-        self.arc.len() + usize::from(self.load.is_some())
+        self.arc.len() + usize::from(self.load.is_some()) + self.turning.len().div_ceil(6)
     }
 
     /// Arc length of a block, the load's being the cable's end, m.
@@ -295,11 +303,11 @@ impl System {
         u: &[f64],
         w: &[f64],
         a: Option<&[f64]>,
-        stage: Option<Stage>,
+        axially: Axially,
         f: &mut [f64],
         m: &mut Matrices,
     ) {
-        self.tally = self.chain.pass::<TANGENT>(env, u, w, a, stage, &mut self.axial, &mut self.forces, m);
+        self.tally = self.chain.pass::<TANGENT>(env, u, w, a, axially, &mut self.axial, &mut self.forces, m);
         if self.chain.water.is_some() {
             self.surface::<TANGENT>(env, u, w, a, m);
         }
@@ -313,6 +321,7 @@ impl System {
             }
         }
         self.ends::<TANGENT>(env, u, w, a, f, m);
+        self.turn::<TANGENT>(env, w, a, f, m);
         self.account_for_far_end(env, u, w);
     }
 
@@ -448,13 +457,36 @@ impl System {
                 }
                 m.mass.diagonal[node][r][r] = 1.0;
             }
+            for c in &mut m.couplings {
+                c.damping_column[6 * node..6 * node + 3].fill(0.0);
+            }
         }
     }
 
-    fn force_at(&mut self, stage: Option<Stage>, t: f64, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64]) {
+    /// The step that began with the last tangent ends at (u, w), of the stages' increments weighted so.
+    pub fn accept(&mut self, u: &[f64], w: &[f64], weights: &[f64]) {
+        self.chain.accept(u, w, weights, &mut self.axial);
+    }
+
+    /// Copies the state's axial forces, three per element (N), out of the system.
+    pub fn save_axial(&self, to: &mut [f64]) {
+        for (to, n) in to.iter_mut().zip(elements::axial_forces(&self.axial)) {
+            *to = *n;
+        }
+    }
+
+    /// Puts them back; they are then part of the state.
+    pub fn restore_axial(&mut self, from: &[f64]) {
+        self.keeps_axial = true;
+        for (n, from) in elements::axial_forces_mut(&mut self.axial).zip(from) {
+            *n = *from;
+        }
+    }
+
+    fn force_at(&mut self, axially: Axially, t: f64, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64]) {
         let env = self.environment(t);
         let mut none = std::mem::take(&mut self.matrices);
-        self.evaluate::<false>(&env, u, w, a, stage, f, &mut none);
+        self.evaluate::<false>(&env, u, w, a, axially, f, &mut none);
         self.matrices = none;
         f[..3].fill(0.0);
         self.drive_far_end(&env, a, f);
@@ -464,7 +496,7 @@ impl System {
     pub fn balance(&mut self, t: f64, u: &[f64], w: &[f64], a: &[f64], f: &mut [f64]) {
         let env = self.environment(t);
         let mut none = std::mem::take(&mut self.matrices);
-        self.evaluate::<false>(&env, u, w, Some(a), None, f, &mut none);
+        self.evaluate::<false>(&env, u, w, Some(a), Axially::Law, f, &mut none);
         self.matrices = none;
     }
 }
@@ -497,21 +529,19 @@ impl Problem for System {
     }
 
     fn force(&mut self, t: f64, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64]) {
-        self.force_at(None, t, u, w, a, f);
+        self.force_at(Axially::Law, t, u, w, a, f);
     }
 
     fn stage_force(&mut self, stage: Stage, t: f64, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64]) {
-        self.force_at(Some(stage), t, u, w, a, f);
+        self.force_at(Axially::Stage(stage), t, u, w, a, f);
     }
 
     fn linearize(&mut self, t: f64, u: &[f64], w: &[f64], a: &[f64], m: &mut Matrices, f: &mut [f64]) {
         let env = self.environment(t);
-        for b in [&mut m.mass, &mut m.damping, &mut m.stiffness] {
-            b.clear();
-        }
+        m.clear(self.turning.iter().map(|s| s.at));
         // The tangent wants F − M(u) a, the caller F: add M a back.
         let varies = self.mass_varies();
-        self.evaluate::<true>(&env, u, w, varies.then_some(a), None, f, m);
+        self.evaluate::<true>(&env, u, w, varies.then_some(a), if self.keeps_axial { Axially::Begin } else { Axially::Law }, f, m);
         if varies {
             m.mass.multiply_add(1.0, a, f);
         }

@@ -41,6 +41,8 @@ pub(super) fn output(quantity: Output, o: &Outputs, ned: bool) -> Value {
         SheaveLineLoadMin(i) => real(sheave(i).line_load_min),
         SheaveInContact(i) => Value::Boolean(sheave(i).in_contact),
         SheaveOutOfGroove(i) => Value::Boolean(sheave(i).out_of_groove),
+        SheaveAngle(i) => real(sheave(i).angle),
+        SheaveRate(i) => real(sheave(i).rate),
         CableTensionMax => real(o.cable.tension_max),
         CableTensionMin => real(o.cable.tension_min),
         CableSlack => Value::Boolean(o.cable.slack),

@@ -8,7 +8,7 @@ use crate::scene::{Leaf, Scene, SceneErrors, Setpoint};
 use crate::sim::Inputs;
 use model_description::guid::guid;
 use model_description::scenes::{BuiltIn, SCENES};
-use model_description::{Document, Input, Output, Shape, Value, Variable};
+use model_description::{Document, Input, Output, Shape, SheaveShape, Value, Variable};
 use std::fs;
 use std::path::Path;
 
@@ -135,7 +135,7 @@ fn shape(scene: &Scene) -> Shape {
         payout_command: scene.winch.as_ref().is_some_and(|w| w.payout_command),
         external_setpoint: scene.winch.as_ref().is_some_and(|w| w.setpoint == Setpoint::External),
         anchor: scene.anchor.is_some(),
-        sheaves: scene.sheaves.iter().map(|s| s.groove_angle.is_some()).collect(),
+        sheaves: scene.sheaves.iter().map(|s| SheaveShape { groove: s.groove_angle.is_some(), turns: s.inertia.is_some() }).collect(),
         fluid: scene.fluid.is_some(),
         noise: scene.fluid.as_ref().is_some_and(|f| f.noise.is_some()),
         body: scene.body.is_some(),

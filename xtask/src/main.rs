@@ -8,6 +8,8 @@ mod html_report;
 mod package;
 mod platform;
 mod plots;
+mod report;
+mod results;
 mod run;
 mod scene_pages;
 mod scenes;
@@ -34,6 +36,8 @@ enum Command {
     Demo(demo::Args),
     /// Pack a scene as target/fmu/NAME.fmu
     Package(package::Args),
+    /// Hold packed FMUs against closed forms, measurements and other programs; writes fmu-tests/report
+    Report(report::Args),
     /// Drive a packed FMU over a series of inputs and write its outputs as CSV
     Run(run::Args),
     /// List the built-in scenes
@@ -59,6 +63,7 @@ fn main() -> ExitCode {
     let outcome = match cli.command {
         Command::Demo(args) => demo::run(args),
         Command::Package(args) => package::run(args),
+        Command::Report(args) => report::run(args),
         Command::Run(args) => run::run(args),
         Command::Scenes(args) => scenes::run(args),
         Command::ShipMotion(args) => ship_motion::run(&args),

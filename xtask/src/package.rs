@@ -41,10 +41,32 @@ pub fn package(scene: &str, out: Option<&Path>) -> Result<PathBuf> {
     if out.is_dir() {
         return Err(at(&out, "is a folder; expected the FMU's file name after --out"));
     }
-    let library = build_library()?;
-    let library = fs::read(&library).map_err(|e| at(&library, e))?;
-    write_archive(&out, &contents(&model, library)?)?;
+    Packer::new()?.write(&model, &out)?;
     Ok(out)
+}
+
+/// The library, built once for many FMUs.
+pub struct Packer {
+    library: Vec<u8>,
+}
+
+impl Packer {
+    /// Builds the library.
+    ///
+    /// # Errors
+    /// A failed build.
+    pub fn new() -> Result<Self> {
+        let library = build_library()?;
+        Ok(Self { library: fs::read(&library).map_err(|e| at(&library, e))? })
+    }
+
+    /// Writes the FMU of a model.
+    ///
+    /// # Errors
+    /// A file that cannot be read or written.
+    pub fn write(&self, model: &Model, out: &Path) -> Result<()> {
+        write_archive(out, &contents(model, &self.library)?)
+    }
 }
 
 /// The model of a scene, given as on the command line.
@@ -93,14 +115,14 @@ fn build_library() -> Result<PathBuf> {
 /// Paths in the archive, with forward slashes, and bytes.
 type Contents = Vec<(String, Vec<u8>)>;
 
-fn contents(model: &Model, library: Vec<u8>) -> Result<Contents> {
+fn contents(model: &Model, library: &[u8]) -> Result<Contents> {
     let picture = picture(model);
     let picture_name = picture.as_ref().map(|_| PICTURE);
     let document = Document { picture: picture_name, ..model.document() };
     let description = xml::model_description(&document).map_err(|e| Failure(format!("modelDescription.xml: {e}")))?;
     let mut contents = vec![
         ("modelDescription.xml".to_owned(), description),
-        (platform::fmu_library(document.name), library),
+        (platform::fmu_library(document.name), library.to_vec()),
         ("documentation/index.html".to_owned(), html::page(&document).into_bytes()),
         ("documentation/licenses/license.txt".to_owned(), license()?.into_bytes()),
     ];

@@ -2,7 +2,7 @@
 
 use crate::error::{Failure, Result, at};
 use crate::host::Fmu;
-use crate::package::{package, root};
+use crate::package::{Packer, root};
 use crate::plots::{Chart, INK, Mark, PALETTE, Panel, Series, WATER};
 use fairlead::scene::Scene;
 use fairlead::variables::Model;
@@ -29,8 +29,9 @@ pub fn folder() -> PathBuf {
 pub fn write_all() -> Result<()> {
     let folder = folder();
     fs::create_dir_all(&folder).map_err(|e| at(&folder, e))?;
+    let packer = Packer::new()?;
     for scene in SCENES {
-        let shape = Shape::of(scene)?;
+        let shape = Shape::of(scene, &packer)?;
         let write = |file: String, text: String| {
             let path = folder.join(file);
             fs::write(&path, text).map_err(|e| at(&path, e))?;
@@ -87,11 +88,11 @@ struct Shape {
 
 impl Shape {
     /// Packs the scene with more output points and starts it.
-    fn of(scene: &BuiltIn) -> Result<Self> {
+    fn of(scene: &BuiltIn, packer: &Packer) -> Result<Self> {
         let temporary = tempfile::tempdir().map_err(|e| Failure(format!("no temporary folder: {e}")))?;
         let (file, fmu) = (temporary.path().join("scene.toml"), temporary.path().join("scene.fmu"));
         fs::write(&file, with_points(scene.text)).map_err(|e| at(&file, e))?;
-        package(&file.display().to_string(), Some(&fmu))?;
+        packer.write(&Model::read(&file)?, &fmu)?;
         let instance = Fmu::open(&fmu)?;
         let instance = instance.instantiate(scene.name)?;
         instance.setup(None, 0.0, None)?;

@@ -1,0 +1,148 @@
+//! A block-tridiagonal system in which a few unknowns are coupled with many others: borders (Golub & Van Loan, Matrix Computations, 2.1.4,
+//! the block elimination behind the Sherman-Morrison-Woodbury formula).
+
+use super::{BLOCK, BlockTridiagonal, SingularBlock};
+
+/// Factors of A + Σ_k (c_k e_kᵀ + e_k r_kᵀ), where A holds nothing but a diagonal element in the rows and columns of the unknowns `at`, and
+/// c_k and r_k vanish there.
+#[derive(Clone, Debug, Default)]
+pub struct Bordered {
+    /// A, then its factors.
+    pub core: BlockTridiagonal,
+    at: Vec<usize>,
+    /// c_k, then A⁻¹ c_k.
+    columns: Vec<Vec<f64>>,
+    /// r_k, then over its diagonal element.
+    rows: Vec<Vec<f64>>,
+    /// Inverse of 1 − r_k·A⁻¹c_l, row major.
+    inverse: Vec<f64>,
+    scratch: Vec<f64>,
+}
+
+impl Bordered {
+    /// All zero, `n` block rows, no borders.
+    pub fn zeros(n: usize) -> Self {
+        Self { core: BlockTridiagonal::zeros(n), ..Self::default() }
+    }
+
+    /// The `k`-th border's column and row, to be filled before `factor`; further ones are made as needed.
+    pub fn border(&mut self, k: usize, at: usize) -> (&mut [f64], &mut [f64]) {
+        let n = BLOCK * self.core.len();
+        while self.at.len() <= k {
+            self.at.push(at);
+            self.columns.push(vec![0.0; n]);
+            self.rows.push(vec![0.0; n]);
+            self.inverse = vec![0.0; self.at.len() * self.at.len()];
+            self.scratch = vec![0.0; self.at.len()];
+        }
+        self.at[k] = at;
+        (&mut self.columns[k], &mut self.rows[k])
+    }
+
+    /// Replaces the matrix by its factors.
+    ///
+    /// # Errors
+    /// [`SingularBlock`] names the block row; the content is then useless.
+    pub fn factor(&mut self) -> Result<(), SingularBlock> {
+        for (at, row) in self.at.iter().zip(&mut self.rows) {
+            let inverse = 1.0 / self.core.diagonal[at / BLOCK][at % BLOCK][at % BLOCK];
+            row.iter_mut().for_each(|x| *x *= inverse);
+        }
+        self.core.factor()?;
+        let n = self.at.len();
+        for k in 0..n {
+            self.core.solve(&mut self.columns[k]);
+        }
+        for k in 0..n {
+            for l in 0..n {
+                self.inverse[k * n + l] = f64::from(u8::from(k == l)) - dot(&self.rows[k], &self.columns[l]);
+            }
+        }
+        let at = &self.at;
+        invert(n, &mut self.inverse).map_err(|k| SingularBlock { row: at[k] / BLOCK })
+    }
+
+    /// Solves in place; `self` holds the factors.
+    pub fn solve(&mut self, b: &mut [f64]) {
+        self.core.solve(b);
+        let n = self.at.len();
+        for (k, y) in self.scratch.iter_mut().enumerate() {
+            *y = b[self.at[k]] - dot(&self.rows[k], b);
+        }
+        for k in 0..n {
+            let y: f64 = (0..n).map(|l| self.inverse[k * n + l] * self.scratch[l]).sum();
+            for (b, x) in b.iter_mut().zip(&self.columns[k]) {
+                *b -= y * x;
+            }
+            b[self.at[k]] = y;
+        }
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Inverse in place by Gauss and Jordan's elimination, for a matrix near the identity in size and condition.
+///
+/// # Errors
+/// The row whose pivot vanishes or is not finite.
+fn invert(n: usize, a: &mut [f64]) -> Result<(), usize> {
+    for k in 0..n {
+        let pivot = 1.0 / a[k * n + k];
+        if !pivot.is_finite() {
+            return Err(k);
+        }
+        a[k * n + k] = 1.0;
+        for c in 0..n {
+            a[k * n + c] *= pivot;
+        }
+        for r in (0..n).filter(|r| *r != k) {
+            let f = a[r * n + k];
+            a[r * n + k] = 0.0;
+            for c in 0..n {
+                a[r * n + c] -= f * a[k * n + c];
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use faer::prelude::*;
+
+    #[test]
+    fn cross_solution_matches_faers_dense_lu() {
+        let (n, at) = (5, [24, 25, 26]);
+        let value = |r: usize, c: usize| ((7 * r + 13 * c) as f64 * 0.7).sin() + if r == c { 9.0 } else { 0.0 };
+        let is_border = |i: usize| at.contains(&i);
+        let mut a = Bordered::zeros(n);
+        let mut dense = faer::Mat::<f64>::zeros(6 * n, 6 * n);
+        for r in 0..6 * n {
+            for c in 0..6 * n {
+                let near = (r / 6).abs_diff(c / 6) <= 1;
+                let mut put = |x: f64| dense[(r, c)] = x;
+                if r == c || near && !is_border(r) && !is_border(c) && r < 24 && c < 24 {
+                    a.core.add(r / 6, c / 6, r % 6, c % 6, value(r, c));
+                    put(value(r, c));
+                } else if is_border(r) && c < 24 {
+                    a.border(r - 24, r).1[c] = value(r, c);
+                    put(value(r, c));
+                } else if is_border(c) && r < 24 {
+                    a.border(c - 24, c).0[r] = value(r, c);
+                    put(value(r, c));
+                }
+            }
+        }
+        let b: Vec<f64> = (0..6 * n).map(|i| (i as f64 * 0.3).cos()).collect();
+        let oracle = dense.partial_piv_lu().solve(faer::Mat::from_fn(6 * n, 1, |r, _| b[r]));
+        let mut x = b;
+        a.factor().unwrap();
+        a.solve(&mut x);
+        for i in 0..6 * n {
+            assert!((x[i] - oracle[(i, 0)]).abs() < 1e-12, "{i}: {} {}", x[i], oracle[(i, 0)]); // condition number about 10
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! The scenes of the report: built-in ones with keys changed, and small ones written here.
+
+use crate::error::{Failure, Result};
+use model_description::scenes::named;
+use toml::{Table, Value};
+
+/// A scene file in memory, and the start shape that lies beside it as [`SHAPE`].
+#[derive(Clone, Debug)]
+pub struct Scene {
+    table: Table,
+    shape: Option<String>,
+}
+
+/// Name of the start shape's file: what `initial.file` says.
+pub const SHAPE: &str = "shape.csv";
+
+impl Scene {
+    /// From the text of a scene file.
+    ///
+    /// # Errors
+    /// No TOML.
+    pub fn parse(text: &str) -> Result<Self> {
+        let table = text.parse().map_err(|e| Failure(format!("a scene of the report: {e}\nin\n{text}")))?;
+        Ok(Self { table, shape: None })
+    }
+
+    /// A built-in scene, if there is one of that name.
+    ///
+    /// # Errors
+    /// As [`Self::parse`].
+    pub fn built_in(name: &str) -> Result<Option<Self>> {
+        named(name).map(|scene| Self::parse(scene.text)).transpose()
+    }
+
+    /// The scene with another value of a key, which may be a whole table; the key's tables are made if they are not there.
+    pub fn with(mut self, key: &str, value: impl Into<Value>) -> Self {
+        let (path, name) = key.rsplit_once('.').unwrap_or(("", key));
+        let mut table = &mut self.table;
+        for part in path.split('.').filter(|part| !part.is_empty()) {
+            let inner = table.entry(part).or_insert_with(|| Value::Table(Table::new()));
+            if !inner.is_table() {
+                *inner = Value::Table(Table::new());
+            }
+            let Value::Table(inner) = inner else { return self };
+            table = inner;
+        }
+        table.insert(name.to_owned(), value.into());
+        self
+    }
+
+    /// The scene with a mesh of equal elements.
+    pub fn elements(self, count: usize) -> Self {
+        self.with("mesh", Table::from_iter([("elements".to_owned(), Value::Integer(count as i64))]))
+    }
+
+    /// The scene with every region's elements multiplied by `factor`, rounded, at least one.
+    pub fn refined(mut self, factor: f64) -> Self {
+        let regions = self.table.get_mut("mesh").and_then(|mesh| mesh.get_mut("regions")).and_then(Value::as_array_mut);
+        for count in regions.into_iter().flatten().filter_map(|region| region.get_mut("elements")) {
+            let old = count.as_integer().unwrap_or(1) as f64;
+            *count = Value::Integer((factor * old).round().max(1.0) as i64);
+        }
+        self
+    }
+
+    /// The scene with a start shape.
+    pub fn start_shape(mut self, rows: &[Row]) -> Self {
+        let mut text = String::from("s,x,y,z,tx,ty,tz,vx,vy,vz\n");
+        for (s, r, t, v) in rows {
+            let cells: Vec<String> = std::iter::once(s).chain(r).chain(t).chain(v).map(|x| format!("{x:?}")).collect();
+            text += &(cells.join(",") + "\n");
+        }
+        self.shape = Some(text);
+        self.with("initial", Table::from_iter([("state".into(), "shape".into()), ("file".into(), SHAPE.into())]))
+    }
+
+    /// A number of the scene by its dotted key.
+    pub fn number(&self, key: &str) -> Option<f64> {
+        let value = key.split('.').try_fold(None::<&Value>, |at, part| Some(Some(at.map_or(self.table.get(part), |v| v.get(part))?)))??;
+        value.as_float().or_else(|| value.as_integer().map(|n| n as f64))
+    }
+
+    /// Number of elements.
+    pub fn element_count(&self) -> usize {
+        let mesh = self.table.get("mesh");
+        let regions = mesh.and_then(|m| m.get("regions")).and_then(Value::as_array).into_iter().flatten();
+        let sum: i64 = regions.filter_map(|r| r.get("elements")?.as_integer()).sum();
+        (sum + mesh.and_then(|m| m.get("elements")).and_then(Value::as_integer).unwrap_or(0)) as usize
+    }
+
+    /// The files: the scene's text, and the start shape's.
+    pub fn files(&self) -> (String, Option<&str>) {
+        (self.table.to_string(), self.shape.as_deref())
+    }
+}
+
+/// A row of a start shape: s, position, tangent, velocity; SI units.
+pub type Row = (f64, [f64; 3], [f64; 3], [f64; 3]);
+
+/// A cable; the rest of a scene is written as TOML. SI units.
+#[derive(Clone, Copy, Debug)]
+pub struct Wire {
+    /// Unstretched length.
+    pub length: f64,
+    /// Diameter.
+    pub diameter: f64,
+    /// Mass per unstretched length.
+    pub mass_per_length: f64,
+    /// Axial stiffness.
+    pub ea: f64,
+    /// Bending stiffness.
+    pub ei: f64,
+    /// Further lines of the table `[cable]`.
+    pub laws: &'static str,
+}
+
+/// The flume's nylon, as in P2, P3 and P5.
+pub const NYLON: Wire = Wire { length: 1.0, diameter: 4.5e-4, mass_per_length: 2e-4, ea: 222.0, ei: 2.82e-6, laws: "" };
+
+impl Wire {
+    /// The scene with `rest`, the other tables' text, an equal mesh, this gravity and so many points of the cable as outputs.
+    ///
+    /// # Errors
+    /// `rest` is no TOML.
+    pub fn scene(&self, gravity: f64, elements: usize, points: usize, rest: &str) -> Result<Scene> {
+        let Self { length, diameter, mass_per_length, ea, ei, laws } = self;
+        Scene::parse(&format!(
+            "name = \"bench\"\ngravity = {gravity:?}\n[cable]\nlength = {length:?}\ndiameter = {diameter:?}\n\
+             mass_per_length = {mass_per_length:?}\nEA = {ea:?}\nEI = {ei:?}\n{laws}\n[mesh]\nelements = {elements}\n\
+             [outputs]\npoints = {points}\n{rest}\n"
+        ))
+    }
+}
+
+/// On earth, m/s².
+pub const G: f64 = 9.81;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exact_keys_are_set_and_read() {
+        let scene = Scene::parse("[mesh]\nregions = [{ length = 1.0, elements = 5 }, { length = 2, elements = 3 }]\n").unwrap();
+        assert_eq!(scene.element_count(), 8);
+        assert_eq!(scene.clone().refined(0.5).element_count(), 5);
+        let scene = scene.elements(7).with("solver.tolerance", 1e-3).with("gravity", 2.0);
+        assert_eq!(scene.element_count(), 7);
+        assert_eq!((scene.number("solver.tolerance"), scene.number("gravity"), scene.number("a.b")), (Some(1e-3), Some(2.0), None));
+        let again = Scene::parse(&scene.files().0).unwrap();
+        assert_eq!(again.table, scene.table);
+    }
+
+    #[test]
+    fn exact_every_built_in_scene_survives_being_written_again() {
+        for scene in model_description::scenes::SCENES {
+            let text = Scene::built_in(scene.name).unwrap().unwrap().files().0;
+            assert_eq!(text.parse::<Table>().unwrap(), scene.text.parse::<Table>().unwrap());
+        }
+    }
+}
