@@ -2,6 +2,7 @@
 
 use crate::document::{LOG_CATEGORIES, STATUS_CODES};
 use crate::keys::{Constant, GROUPS, KEYS, Presence};
+use crate::notes::notes;
 use crate::units::type_named;
 use crate::{Causality, Document, Value, Variability, Variable};
 use std::fmt::Write;
@@ -19,6 +20,7 @@ pub fn page(d: &Document) -> String {
         escape(d.guid)
     );
     p += CONTENTS;
+    scene(&mut p, d);
     p += MODEL;
     p += if d.shape.ned { FRAMES_NED } else { FRAMES_Z_UP };
     p += SIGNS;
@@ -46,13 +48,13 @@ th { background: #f0f4f8; } td:first-child, code { font-family: ui-monospace, mo
 caption { text-align: left; font-weight: bold; padding: 0.4rem 0; }
 ";
 
-const CONTENTS: &str = "<p><a href=\"#model\">Model</a> &middot; <a href=\"#frames\">Frames and signs</a> &middot; <a href=\"#steps\">Steps</a> &middot; \
+const CONTENTS: &str = "<p><a href=\"#about\">This scene</a> &middot; <a href=\"#model\">Model</a> &middot; <a href=\"#frames\">Frames and signs</a> &middot; <a href=\"#steps\">Steps</a> &middot; \
 <a href=\"#variables\">Inputs and outputs</a> &middot; <a href=\"#parameters\">Parameters</a> &middot; <a href=\"#scene\">Scene file</a> &middot; \
 <a href=\"#limits\">Limits</a> &middot; <a href=\"#status\">Errors and status</a></p>\n";
 
 const MODEL: &str = "<h2 id=\"model\">Model</h2>
 <p>The cable is a chain of gradient-deficient elements of the absolute nodal coordinate formulation (Gerstmayr and Shabana 2006): geometrically
-exact stretching and bending, no torsion. Water acts by buoyancy, drag, added mass and current on the submerged part only. Contact with drums and
+exact stretching and bending, no torsion. Water acts by buoyancy, drag, added mass and current on the submerged part only. The current may carry turbulence: seeded noise of a given spectrum, uniform in space. Contact with drums and
 sheaves is a line contact after Hunt and Crossley, integrated over the arcs that touch. A V groove has two flanks; their force fades over the last
 tenth of the groove's depth, and beside the rim, so that a cable can climb out and is then free. Friction on a sheave is Coulomb's, fading below a
 slip of 1 mm/s. The cable's first node is driven exactly along the winch drum, or fixed at an anchor.</p>
@@ -91,12 +93,31 @@ Outputs are those of the last communication point. The state can be saved, resto
 const LIMITS: &str = "<h2 id=\"limits\">Limits</h2>
 <ul>
 <li>No torsion, no contact of the cable with itself or with the sea bed, one layer on the drum.</li>
-<li>The water surface is still; waves act through the ship's motion only. The current is horizontal and does not change along x and y.</li>
+<li>The water surface is still; waves act through the ship's motion only. The current's profile is horizontal and does not change along x and y; its turbulence is the same everywhere.</li>
 <li>A cable without bending stiffness (EI = 0) has no defined shape where it is slack.</li>
 <li>With <code>cable.compression = \"linear\"</code> a slack cable buckles at the mesh's wavelength; snap loads are then not to be trusted.</li>
 <li>Pitch stays within &plusmn;90&deg; (Euler angles).</li>
 </ul>
 ";
+
+/// What the scene file says in its comments, and the picture of its start shape.
+fn scene(p: &mut String, d: &Document) {
+    let notes = notes(d.text);
+    *p += "<h2 id=\"about\">This scene</h2>\n";
+    if let Some(picture) = d.picture {
+        *p += &format!("<p><img src=\"{}\" alt=\"The cable's start shape from the side\"></p>\n", escape(picture));
+    }
+    for paragraph in &notes.preface {
+        *p += &format!("<p>{}</p>\n", escape(paragraph));
+    }
+    if !notes.remarks.is_empty() {
+        *p += "<table>\n<caption>Remarks in the scene file</caption>\n<tr><th>Key</th><th>Value there</th><th>Remark</th></tr>\n";
+        for r in &notes.remarks {
+            *p += &format!("<tr><td>{}</td><td>{}</td><td>{}</td></tr>\n", escape(&r.key), escape(&r.value), escape(&r.text));
+        }
+        *p += "</table>\n";
+    }
+}
 
 fn variables(p: &mut String, title: &str, causality: Causality, all: &[Variable]) {
     let mut rows = all.iter().filter(|v| v.causality == causality).peekable();

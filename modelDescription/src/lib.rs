@@ -9,6 +9,7 @@ mod document;
 pub mod guid;
 pub mod html;
 pub mod keys;
+pub mod notes;
 mod pattern;
 pub mod scenes;
 pub mod table;
@@ -97,6 +98,8 @@ pub struct Shape {
     pub sheaves: Vec<SheaveShape>,
     /// There is water.
     pub fluid: bool,
+    /// Its current is turbulent.
+    pub noise: bool,
     /// There is a towed body.
     pub body: bool,
     /// It takes an external force.

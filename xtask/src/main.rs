@@ -11,6 +11,7 @@ mod plots;
 mod report;
 mod results;
 mod run;
+mod scene_pages;
 mod scenes;
 mod seakeeping;
 mod series;

@@ -1,11 +1,11 @@
 //! `cargo xtask package`
 
 use crate::error::{Failure, Result, at};
-use crate::platform;
+use crate::{platform, scene_pages};
 use fairlead::scene::best_match;
 use fairlead::variables::Model;
 use model_description::scenes::{SCENES, named};
-use model_description::{html, xml};
+use model_description::{Document, html, xml};
 use std::io::{Seek, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -116,7 +116,9 @@ fn build_library() -> Result<PathBuf> {
 type Contents = Vec<(String, Vec<u8>)>;
 
 fn contents(model: &Model, library: &[u8]) -> Result<Contents> {
-    let document = model.document();
+    let picture = picture(model);
+    let picture_name = picture.as_ref().map(|_| PICTURE);
+    let document = Document { picture: picture_name, ..model.document() };
     let description = xml::model_description(&document).map_err(|e| Failure(format!("modelDescription.xml: {e}")))?;
     let mut contents = vec![
         ("modelDescription.xml".to_owned(), description),
@@ -124,8 +126,19 @@ fn contents(model: &Model, library: &[u8]) -> Result<Contents> {
         ("documentation/index.html".to_owned(), html::page(&document).into_bytes()),
         ("documentation/licenses/license.txt".to_owned(), license()?.into_bytes()),
     ];
+    contents.extend(picture.map(|svg| (format!("documentation/{PICTURE}"), svg)));
     contents.extend(model.resources().into_iter().map(|(path, text)| (format!("resources/{path}"), text.into())));
     Ok(contents)
+}
+
+/// Name of the start shape's picture beside the documentation's page.
+const PICTURE: &str = "start.svg";
+
+/// The picture of a built-in scene's start shape, if it has been drawn (`cargo xtask scenes --pages`).
+fn picture(model: &Model) -> Option<Vec<u8>> {
+    let text = model.resources().first().map(|(_, text)| *text)?;
+    let scene = SCENES.iter().find(|s| s.text == text)?;
+    fs::read(scene_pages::folder().join(format!("{}.svg", scene.name))).ok()
 }
 
 fn license() -> Result<String> {
