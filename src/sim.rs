@@ -48,8 +48,9 @@ pub enum SimError {
     State(String),
 }
 
-/// Velocity error tolerated per tension error asked for: the estimate is of the lower-order formula, so the solution is better than it says.
-const STRICTNESS: f64 = 3.0;
+/// Velocity error tolerated per tension error asked for: the estimate is of the lower-order formula, so the solution is better than it says; and
+/// the errors of many steps add up. With this the true error is about what was asked for (fmu-tests/rust/convergence.rs).
+const STRICTNESS: f64 = 1.5;
 /// Energy defect over the work done from which a run counts as degraded.
 const DEGRADED: f64 = 1e-2;
 

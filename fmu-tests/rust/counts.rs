@@ -44,9 +44,9 @@ fn in_waves(t: f64) -> Inputs {
 fn frozen_sub_steps_of_built_in_scenes() {
     let still = |_: f64| Inputs::default();
     let runs = [
-        ("flume", tried("flume", 0.01, 10.0, in_waves), 2325),
-        ("pulley_1", tried("pulley_1", 0.01, 0.5, still), 842),
-        ("pulley_3", tried("pulley_3", 0.01, 0.5, still), 1018),
+        ("flume", tried("flume", 0.01, 10.0, in_waves), 2645),
+        ("pulley_1", tried("pulley_1", 0.01, 0.5, still), 555),
+        ("pulley_3", tried("pulley_3", 0.01, 0.5, still), 786),
     ];
     for (name, (steps, rejected), _) in &runs {
         println!("{name}: {steps} sub-steps, {rejected} rejected, {} tried", steps + rejected);
