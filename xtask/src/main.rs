@@ -1,10 +1,13 @@
 //! fairlead's commands: one file each.
 
+mod attachments;
+mod companions;
 mod demo;
 mod demo_report;
 mod error;
 mod host;
 mod html_report;
+mod licenses;
 mod package;
 mod platform;
 mod plots;

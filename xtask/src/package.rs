@@ -1,5 +1,7 @@
 //! `cargo xtask package`
 
+use crate::attachments::attachments;
+use crate::companions;
 use crate::error::{Failure, Result, at};
 use crate::platform;
 use fairlead::scene::best_match;
@@ -21,11 +23,23 @@ pub struct Args {
     /// Where to write the FMU.
     #[arg(long)]
     out: Option<PathBuf>,
+    /// Write NAME_OspModelDescription.xml and an example NAME_OspSystemStructure.xml for libcosim beside the FMU.
+    #[arg(long)]
+    osp: bool,
+    /// Write a parameter set NAME.ssv and an example system NAME.ssp beside the FMU.
+    #[arg(long)]
+    ssp: bool,
 }
 
 /// Packs and prints the path.
 pub fn run(args: Args) -> Result<()> {
     let path = package(&args.scene, args.out.as_deref())?;
+    if args.osp || args.ssp {
+        let model = model(&args.scene)?;
+        let osp = if args.osp { companions::write_osp(&model, &path)? } else { Vec::new() };
+        let ssp = if args.ssp { companions::write_ssp(&model, &path)? } else { Vec::new() };
+        osp.iter().chain(&ssp).for_each(|file| println!("{}", file.display()));
+    }
     println!("{}", path.display());
     Ok(())
 }
@@ -113,7 +127,7 @@ fn build_library() -> Result<PathBuf> {
 }
 
 /// Paths in the archive, with forward slashes, and bytes.
-type Contents = Vec<(String, Vec<u8>)>;
+pub type Contents = Vec<(String, Vec<u8>)>;
 
 fn contents(model: &Model, library: &[u8]) -> Result<Contents> {
     let document = model.document();
@@ -122,23 +136,17 @@ fn contents(model: &Model, library: &[u8]) -> Result<Contents> {
         ("modelDescription.xml".to_owned(), description),
         (platform::fmu_library(document.name), library.to_vec()),
         ("documentation/index.html".to_owned(), html::page(&document).into_bytes()),
-        ("documentation/licenses/license.txt".to_owned(), license()?.into_bytes()),
     ];
+    contents.extend(attachments(&document)?);
     contents.extend(model.resources().into_iter().map(|(path, text)| (format!("resources/{path}"), text.into())));
     Ok(contents)
 }
 
-fn license() -> Result<String> {
-    let mut text = String::from("fairlead is licensed under either of the Apache License 2.0 or the MIT license, at your option.\n");
-    for file in ["LICENSE-MIT", "LICENSE-APACHE"] {
-        let path = root().join(file);
-        text += &format!("\n{}\n\n{}", "=".repeat(72), fs::read_to_string(&path).map_err(|e| at(&path, e))?);
-    }
-    Ok(text)
-}
-
-/// Writes beside the goal and renames, so that there is never half an FMU.
-fn write_archive(path: &Path, contents: &Contents) -> Result<()> {
+/// Writes beside the goal and renames, so that there is never half an archive.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn write_archive(path: &Path, contents: &Contents) -> Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     fs::create_dir_all(folder).map_err(|e| at(folder, e))?;
     let mut file = tempfile::Builder::new().prefix(".packing-").tempfile_in(folder).map_err(|e| at(folder, e))?;
