@@ -144,6 +144,9 @@ impl Simulation {
         let system = &mut self.system;
         system.keeps_axial = false;
         system.begin = time;
+        if let Some(turbulence) = &mut system.turbulence {
+            turbulence.start = time;
+        }
         system.ship.start(time, &inputs.ship);
         system.ship.advance(time, 1.0, &inputs.ship);
         system.current = std::array::from_fn(|i| Ramp::from(&inputs.current[i]));
@@ -522,6 +525,9 @@ impl Simulation {
         }
         s.ledger.visit(visit);
         self.system.ship.visit(visit);
+        if let Some(turbulence) = &mut self.system.turbulence {
+            visit(&mut turbulence.start);
+        }
         if let FirstEnd::Winch { drive, .. } = &mut self.system.first {
             drive.visit(visit);
         }

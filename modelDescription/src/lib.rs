@@ -11,6 +11,7 @@ mod groups;
 pub mod guid;
 pub mod html;
 pub mod keys;
+pub mod notes;
 #[cfg(feature = "xml")]
 pub mod osp;
 mod pattern;
@@ -105,6 +106,8 @@ pub struct Shape {
     pub sheaves: Vec<SheaveShape>,
     /// There is water.
     pub fluid: bool,
+    /// Its current is turbulent.
+    pub noise: bool,
     /// There is a towed body.
     pub body: bool,
     /// It takes an external force.

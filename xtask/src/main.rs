@@ -18,6 +18,7 @@ mod python;
 mod report;
 mod results;
 mod run;
+mod scene_pages;
 mod scenes;
 mod seakeeping;
 mod series;

@@ -6,10 +6,11 @@ use crate::companions;
 use crate::error::{Failure, Result, at};
 use crate::library::Library;
 use crate::platform::{self, GLIBC, Platform};
+use crate::scene_pages;
 use fairlead::scene::best_match;
 use fairlead::variables::Model;
 use model_description::scenes::{SCENES, named};
-use model_description::{html, xml};
+use model_description::{Document, html, xml};
 use std::io::{Seek, Write};
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -148,15 +149,27 @@ pub fn target_folder() -> PathBuf {
 pub type Contents = Vec<(String, Vec<u8>)>;
 
 fn contents(model: &Model, libraries: &[Library]) -> Result<Contents> {
-    let document = model.document();
+    let picture = picture(model);
+    let document = Document { picture: picture.as_ref().map(|_| PICTURE), ..model.document() };
     let description = xml::model_description(&document).map_err(|e| Failure(format!("modelDescription.xml: {e}")))?;
     let mut contents =
         vec![("modelDescription.xml".to_owned(), description), ("documentation/index.html".to_owned(), html::page(&document).into_bytes())];
+    contents.extend(picture.map(|svg| (format!("documentation/{PICTURE}"), svg)));
     contents.extend(attachments(&document)?);
     let path = |library: &Library| platform::library_in(&library.folder, document.name, library.suffix);
     contents.extend(libraries.iter().map(|library| (path(library), library.bytes.clone())));
     contents.extend(model.resources().into_iter().map(|(path, text)| (format!("resources/{path}"), text.into())));
     Ok(contents)
+}
+
+/// Name of the start shape's picture beside the documentation's page.
+const PICTURE: &str = "start.svg";
+
+/// The picture of a built-in scene's start shape, if it has been drawn (`cargo xtask scenes --pages`).
+fn picture(model: &Model) -> Option<Vec<u8>> {
+    let text = model.resources().first().map(|(_, text)| *text)?;
+    let scene = SCENES.iter().find(|s| s.text == text)?;
+    fs::read(scene_pages::folder().join(format!("{}.svg", scene.name))).ok()
 }
 
 /// Writes beside the goal and renames, so that there is never half an archive.
