@@ -197,12 +197,16 @@ def systems(xtask, tmp_path_factory):
     return of
 
 
-WIRES = {"winch.angle": "winch.setpoint", "winch.rate": "winch.setpoint_rate"}
+# A winch takes its set-point as an angle with its rate, or in metres of cable.
+ANGLE = {"winch.angle": "winch.setpoint", "winch.rate": "winch.setpoint_rate"}
+PAYOUT = {"winch.payout": "winch.setpoint"}
 
 
 def followed(fmu):
     """fmpy as the master of the example system: two cables, the second's winch following the first's where there is one."""
-    wires = {output: input for output, input in WIRES.items() if {output, input} <= set(fmu.variables)}
+    wires = {}
+    if "winch.setpoint" in fmu.variables:
+        wires = ANGLE if fmu.variables["winch.setpoint"].unit == "rad" else PAYOUT
     series, record = inputs(fmu), recorded(fmu)
     found = {key: {variable: [] for variable in record} for key in ("leader", "follower")}
     with fmu.started() as leader, fmu.started() as follower:

@@ -17,7 +17,7 @@ const VALUES: &str = "http://ssp-standard.org/SSP1/SystemStructureParameterValue
 const OSP: &str = "http://opensimulationplatform.com/SSP/OSPAnnotations";
 
 /// Which output of the first cable feeds which input of the second in the example systems: a winch follows the other.
-/// Empty for a scene without a winch, or whose winch takes its set-point in metres.
+/// An angle follows an angle, metres of payout follow metres. Empty for a scene without a winch.
 pub fn follow(variables: &[Variable]) -> Vec<(&'static str, &'static str)> {
     let unit = |name: &str| variables.iter().find(|v| v.name == name && v.causality != Causality::Parameter).map(|v| v.unit);
     let wires = [("winch.angle", "winch.setpoint"), ("winch.payout", "winch.setpoint"), ("winch.rate", "winch.setpoint_rate")];
