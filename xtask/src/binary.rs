@@ -120,7 +120,7 @@ fn glibc(version: &str) -> Option<Version> {
 
 fn stays_mapped(file: &object::read::elf::ElfFile64) -> object::read::Result<bool> {
     let table = file.elf_section_table().dynamic_table(file.endian(), file.data())?;
-    let nodelete = |d: object::read::elf::Dynamic| d.tag == elf::DT_FLAGS_1 && d.val & u64::from(elf::DF_1_NODELETE.0) != 0;
+    let nodelete = |d: object::read::elf::Dynamic| d.tag == elf::DT_FLAGS_1 && d.val & elf::DF_1_NODELETE.0 != 0;
     Ok(table.iter().any(nodelete))
 }
 
