@@ -2,7 +2,9 @@
 
 import hashlib
 import io
+import os
 import re
+import shutil
 import struct
 import subprocess
 import sys
@@ -13,6 +15,7 @@ from pathlib import Path
 import fmpy
 import pytest
 import scenes
+from conftest import xtask_command
 from lxml import etree, html
 
 SCHEMAS = Path(fmpy.__file__).parent
@@ -167,6 +170,21 @@ def test_exact_the_same_bytes_without_the_machine(flume):
         library = archive.read("binaries/linux64/flume.so")
         texts = b"".join(archive.read(name) for name in archive.namelist() if name.endswith((".xml", ".html", ".txt", ".toml")))
     assert str(scenes.ROOT).encode() not in library + texts
+
+
+@pytest.mark.skipif("FAIRLEAD_REBUILD" not in os.environ, reason="builds the library anew, which takes minutes: set FAIRLEAD_REBUILD=1")
+def test_exact_another_checkout_gives_the_same_bytes(flume, tmp_path):
+    """Same sources, same compiler, same crates; other folders for sources and build."""
+    left_out = shutil.ignore_patterns("target", ".git", ".venv", "__pycache__")
+    copy = shutil.copytree(scenes.ROOT, tmp_path / "another checkout", ignore=left_out)
+    environment = {key: value for key, value in os.environ.items() if key != "CARGO_TARGET_DIR"}
+    # The command asks cargo's variable where its repository is.
+    environment["CARGO_MANIFEST_DIR"] = str(copy / "xtask")
+    command = [*xtask_command(), "package", "flume", "--out", tmp_path / "flume.fmu"]
+    done = subprocess.run(command, cwd=copy, env=environment, capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    assert done.returncode == 0, done.stderr
+    assert (copy / "target" / "release").is_dir(), "it was not built there"
+    assert (tmp_path / "flume.fmu").read_bytes() == flume.path.read_bytes()
 
 
 def test_exact_dist_has_everything_and_its_checksums(xtask):
