@@ -21,6 +21,7 @@ pub fn page(d: &Document) -> String {
     );
     p += CONTENTS;
     scene(&mut p, d);
+    p += &format!("{USE}{FILES}");
     p += MODEL;
     p += if d.shape.ned { FRAMES_NED } else { FRAMES_Z_UP };
     p += SIGNS;
@@ -48,9 +49,29 @@ th { background: #f0f4f8; } td:first-child, code { font-family: ui-monospace, mo
 caption { text-align: left; font-weight: bold; padding: 0.4rem 0; }
 ";
 
-const CONTENTS: &str = "<p><a href=\"#about\">This scene</a> &middot; <a href=\"#model\">Model</a> &middot; <a href=\"#frames\">Frames and signs</a> &middot; <a href=\"#steps\">Steps</a> &middot; \
+const CONTENTS: &str = "<p><a href=\"#about\">This scene</a> &middot; <a href=\"#use\">How to \
+use it</a> &middot; <a href=\"#model\">Model</a> &middot; <a href=\"#frames\">Frames and signs</a> &middot; <a href=\"#steps\">Steps</a> &middot; \
 <a href=\"#variables\">Inputs and outputs</a> &middot; <a href=\"#parameters\">Parameters</a> &middot; <a href=\"#scene\">Scene file</a> &middot; \
 <a href=\"#limits\">Limits</a> &middot; <a href=\"#status\">Errors and status</a></p>\n";
+
+const USE: &str = "<h2 id=\"use\">How to use it</h2>
+<ol>
+<li>Set the parameters that shall differ from the scene's (<a href=\"#parameters\">all of them</a> have defaults).</li>
+<li>Set the inputs for the start time while the FMU initializes: the cable's start shape is found for the ship's pose that is given there. Inputs that
+nobody sets keep the start values listed below; that is a ship at rest, a winch that holds still and no current but the scene's.</li>
+<li>At each communication point set the inputs of that time, then do the step. Give the ship's velocities, and accelerations where the FMU has
+them, with its pose: a pose alone has to be smoothed, which costs delay.</li>
+<li>Look at <code>status.code</code> after each step, in particular if the importing tool ignores what a step returns.</li>
+</ol>
+<p>Feed <code>ship.force</code> and <code>ship.moment</code>, or <code>ship.force_world</code>, back to a ship that the cable shall pull at. Outputs have no
+direct feed-through: they change at the end of a step only, so that a loop through the FMU is no algebraic one.</p>
+";
+
+const FILES: &str = "<p>In this archive besides: <code>resources/scene.toml</code>, the scene as a text that fairlead packs again after changes;
+<code>terminalsAndIcons</code>, inputs and outputs grouped for tools that connect whole vectors; <code>documentation/licenses</code>. The groups are also
+in <code>NAME_OspModelDescription.xml</code> for OSP, and all parameters in <code>NAME.ssv</code> for SSP, both written beside the FMU with
+<code>cargo xtask package --osp --ssp</code>.</p>
+";
 
 const MODEL: &str = "<h2 id=\"model\">Model</h2>
 <p>The cable is a chain of gradient-deficient elements of the absolute nodal coordinate formulation (Gerstmayr and Shabana 2006): geometrically
@@ -64,13 +85,15 @@ span, N + &frac12;EI&kappa;&sup2; at the end of the contact arc. In water all of
 
 const FRAMES_Z_UP: &str = "<h2 id=\"frames\">Frames and signs</h2>
 <p><b>This FMU uses z up.</b> Inertial frame: x and y horizontal, z up, origin anywhere; the still water surface is at
-z = <code>fluid.waterline</code>. Ship frame: origin at the ship's reference point (centre of gravity), x forward, y to port, z up.</p>
+z = <code>fluid.waterline</code>. Ship frame: origin at the ship's reference point (centre of gravity), x forward, y to port, z up.
+Positive roll is starboard down, positive pitch bow down, positive yaw bow to port.</p>
 ";
 
 const FRAMES_NED: &str = "<h2 id=\"frames\">Frames and signs</h2>
 <p><b>This FMU uses z down (NED).</b> Inertial frame: x north, y east, z down; the still water surface is at
 z = <code>fluid.waterline</code>. Ship frame: origin at the ship's reference point (centre of gravity), x forward, y to starboard, z down. Every
-inertial and ship quantity of the scene file, of the parameters, inputs and outputs is given in these frames.</p>
+inertial and ship quantity of the scene file, of the parameters, inputs and outputs is given in these frames.
+Positive roll is starboard down, positive pitch bow up, positive yaw bow to starboard.</p>
 ";
 
 const SIGNS: &str = "<p>Attitude: R = R<sub>z</sub>(yaw) R<sub>y</sub>(pitch) R<sub>x</sub>(roll) takes ship components to inertial ones. The rates are the
@@ -92,7 +115,10 @@ Outputs are those of the last communication point. The state can be saved, resto
 
 const LIMITS: &str = "<h2 id=\"limits\">Limits</h2>
 <ul>
-<li>No torsion, no contact of the cable with itself or with the sea bed, one layer on the drum.</li>
+<li>No torsion, no contact of the cable with itself or with the sea bed, one layer on the drum and no friction
+there.</li>
+<li>The section is linearly elastic: EA and EI do not change with load. The drag of <code>cd = \"cylinder\"</code> is that of a smooth cylinder for Reynolds
+numbers up to 2&middot;10<sup>5</sup>, of <code>\"sphere\"</code> up to 3&middot;10<sup>5</sup>, and is held constant beyond.</li>
 <li>The water surface is still; waves act through the ship's motion only. The current's profile is horizontal and does not change along x and y; its turbulence is the same everywhere.</li>
 <li>A cable without bending stiffness (EI = 0) has no defined shape where it is slack.</li>
 <li>With <code>cable.compression = \"linear\"</code> a slack cable buckles at the mesh's wavelength; snap loads are then not to be trusted.</li>

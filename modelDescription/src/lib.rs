@@ -6,13 +6,21 @@
 //! This crate knows FMI and names, but no physics and no file format of scenes.
 
 mod document;
+#[cfg(feature = "xml")]
+mod groups;
 pub mod guid;
 pub mod html;
 pub mod keys;
 pub mod notes;
+#[cfg(feature = "xml")]
+pub mod osp;
 mod pattern;
 pub mod scenes;
+#[cfg(feature = "xml")]
+pub mod ssp;
 pub mod table;
+#[cfg(feature = "xml")]
+pub mod terminals;
 pub mod units;
 #[cfg(feature = "xml")]
 pub mod xml;

@@ -1,13 +1,20 @@
 //! fairlead's commands: one file each.
 
+mod attachments;
+mod binary;
+mod companions;
 mod demo;
 mod demo_report;
+mod dist;
 mod error;
 mod host;
 mod html_report;
+mod library;
+mod licenses;
 mod package;
 mod platform;
 mod plots;
+mod python;
 mod report;
 mod results;
 mod run;
@@ -17,6 +24,7 @@ mod seakeeping;
 mod series;
 mod ship_motion;
 mod test;
+mod toolchain;
 mod validate;
 mod xml_tree;
 
@@ -34,6 +42,8 @@ struct Cli {
 enum Command {
     /// Pack the default scene, drive it over a ship motion and report under target/demo
     Demo(demo::Args),
+    /// Gather the built-in scenes' FMUs with all that goes with them in target/dist
+    Dist(dist::Args),
     /// Pack a scene as target/fmu/NAME.fmu
     Package(package::Args),
     /// Hold packed FMUs against closed forms, measurements and other programs; writes fmu-tests/report
@@ -62,6 +72,7 @@ fn main() -> ExitCode {
     };
     let outcome = match cli.command {
         Command::Demo(args) => demo::run(args),
+        Command::Dist(args) => dist::run(args),
         Command::Package(args) => package::run(args),
         Command::Report(args) => report::run(args),
         Command::Run(args) => run::run(args),

@@ -1,14 +1,18 @@
 //! `cargo xtask package`
 
+use crate::attachments::attachments;
+use crate::binary::Needs;
+use crate::companions;
 use crate::error::{Failure, Result, at};
-use crate::{platform, scene_pages};
+use crate::library::Library;
+use crate::platform::{self, GLIBC, Platform};
+use crate::scene_pages;
 use fairlead::scene::best_match;
 use fairlead::variables::Model;
 use model_description::scenes::{SCENES, named};
 use model_description::{Document, html, xml};
 use std::io::{Seek, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 use std::{env, fs};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
@@ -21,12 +25,33 @@ pub struct Args {
     /// Where to write the FMU.
     #[arg(long)]
     out: Option<PathBuf>,
+    /// Write NAME_OspModelDescription.xml and an example NAME_OspSystemStructure.xml for libcosim beside the FMU.
+    #[arg(long)]
+    osp: bool,
+    /// Write a parameter set NAME.ssv and an example system NAME.ssp beside the FMU.
+    #[arg(long)]
+    ssp: bool,
+    /// Put libraries for these platforms in, each for old systems too: linux64, win64, aarch64-linux, separated by commas. Without
+    /// it there is one library, for this machine and others as new.
+    #[arg(long, value_delimiter = ',', value_parser = Platform::named)]
+    platform: Vec<Platform>,
 }
 
-/// Packs and prints the path.
+/// Packs, says what each library needs, and prints the path.
 pub fn run(args: Args) -> Result<()> {
-    let path = package(&args.scene, args.out.as_deref())?;
-    println!("{}", path.display());
+    let (model, out) = plan(&args.scene, args.out.as_deref())?;
+    let packer = Packer::with(&args.platform)?;
+    packer.write(&model, &out)?;
+    for library in &packer.libraries {
+        println!("{}: needs {}", library.folder, library.needs);
+        if args.platform.is_empty() && library.needs.glibc > Some(GLIBC) {
+            println!("for systems older than this one pack with --platform {}", library.folder);
+        }
+    }
+    let osp = if args.osp { companions::write_osp(&model, &out)? } else { Vec::new() };
+    let ssp = if args.ssp { companions::write_ssp(&model, &out)? } else { Vec::new() };
+    osp.iter().chain(&ssp).for_each(|file| println!("{}", file.display()));
+    println!("{}", out.display());
     Ok(())
 }
 
@@ -35,29 +60,51 @@ pub fn run(args: Args) -> Result<()> {
 /// # Errors
 /// An unknown or wrong scene, a failed build, a file that cannot be read or written.
 pub fn package(scene: &str, out: Option<&Path>) -> Result<PathBuf> {
+    let (model, out) = plan(scene, out)?;
+    Packer::new()?.write(&model, &out)?;
+    Ok(out)
+}
+
+/// What to pack, and where to.
+fn plan(scene: &str, out: Option<&Path>) -> Result<(Model, PathBuf)> {
     let model = model(scene)?;
     let name = &model.initial_scene.name;
     let out = out.map_or_else(|| target_folder().join("fmu").join(format!("{name}.fmu")), Path::to_path_buf);
     if out.is_dir() {
         return Err(at(&out, "is a folder; expected the FMU's file name after --out"));
     }
-    Packer::new()?.write(&model, &out)?;
-    Ok(out)
+    Ok((model, out))
 }
 
-/// The library, built once for many FMUs.
+/// The libraries, built once for many FMUs.
 pub struct Packer {
-    library: Vec<u8>,
+    libraries: Vec<Library>,
 }
 
 impl Packer {
-    /// Builds the library.
+    /// Builds the library for this machine.
     ///
     /// # Errors
     /// A failed build.
     pub fn new() -> Result<Self> {
-        let library = build_library()?;
-        Ok(Self { library: fs::read(&library).map_err(|e| at(&library, e))? })
+        Self::with(&[])
+    }
+
+    /// Builds portable libraries for these platforms; for none, the one for this machine.
+    ///
+    /// # Errors
+    /// Tools that are missing, or a failed build.
+    pub fn with(platforms: &[Platform]) -> Result<Self> {
+        let libraries = match platforms {
+            [] => vec![Library::plain()?],
+            some => some.iter().map(Library::portable).collect::<Result<_>>()?,
+        };
+        Ok(Self { libraries })
+    }
+
+    /// What each library asks of its system, with FMI's name of the platform.
+    pub fn needs(&self) -> impl Iterator<Item = (&str, &Needs)> {
+        self.libraries.iter().map(|library| (library.folder.as_str(), &library.needs))
     }
 
     /// Writes the FMU of a model.
@@ -65,7 +112,7 @@ impl Packer {
     /// # Errors
     /// A file that cannot be read or written.
     pub fn write(&self, model: &Model, out: &Path) -> Result<()> {
-        write_archive(out, &contents(model, &self.library)?)
+        write_archive(out, &contents(model, &self.libraries)?)
     }
 }
 
@@ -98,35 +145,19 @@ pub fn target_folder() -> PathBuf {
     env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), |folder| root().join(folder))
 }
 
-/// Builds the library alone: together with the rlib it would silently lose link-time optimization.
-fn build_library() -> Result<PathBuf> {
-    let target = target_folder();
-    let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo.current_dir(root()).env_remove("CARGO_BUILD_TARGET").arg("rustc");
-    cargo.args(["--quiet", "--lib", "--release", "--crate-type", "cdylib", "--package", "fairlead", "--target-dir"]).arg(&target);
-    cargo.args(["--", "-C", "strip=symbols"]).stdout(Stdio::null());
-    let status = cargo.status().map_err(|e| Failure(format!("cargo cannot be started: {e}")))?;
-    if !status.success() {
-        return Err(Failure("the library did not build; cargo's messages are above".into()));
-    }
-    Ok(target.join("release").join(platform::cargo_library()))
-}
-
 /// Paths in the archive, with forward slashes, and bytes.
-type Contents = Vec<(String, Vec<u8>)>;
+pub type Contents = Vec<(String, Vec<u8>)>;
 
-fn contents(model: &Model, library: &[u8]) -> Result<Contents> {
+fn contents(model: &Model, libraries: &[Library]) -> Result<Contents> {
     let picture = picture(model);
-    let picture_name = picture.as_ref().map(|_| PICTURE);
-    let document = Document { picture: picture_name, ..model.document() };
+    let document = Document { picture: picture.as_ref().map(|_| PICTURE), ..model.document() };
     let description = xml::model_description(&document).map_err(|e| Failure(format!("modelDescription.xml: {e}")))?;
-    let mut contents = vec![
-        ("modelDescription.xml".to_owned(), description),
-        (platform::fmu_library(document.name), library.to_vec()),
-        ("documentation/index.html".to_owned(), html::page(&document).into_bytes()),
-        ("documentation/licenses/license.txt".to_owned(), license()?.into_bytes()),
-    ];
+    let mut contents =
+        vec![("modelDescription.xml".to_owned(), description), ("documentation/index.html".to_owned(), html::page(&document).into_bytes())];
     contents.extend(picture.map(|svg| (format!("documentation/{PICTURE}"), svg)));
+    contents.extend(attachments(&document)?);
+    let path = |library: &Library| platform::library_in(&library.folder, document.name, library.suffix);
+    contents.extend(libraries.iter().map(|library| (path(library), library.bytes.clone())));
     contents.extend(model.resources().into_iter().map(|(path, text)| (format!("resources/{path}"), text.into())));
     Ok(contents)
 }
@@ -141,17 +172,11 @@ fn picture(model: &Model) -> Option<Vec<u8>> {
     fs::read(scene_pages::folder().join(format!("{}.svg", scene.name))).ok()
 }
 
-fn license() -> Result<String> {
-    let mut text = String::from("fairlead is licensed under either of the Apache License 2.0 or the MIT license, at your option.\n");
-    for file in ["LICENSE-MIT", "LICENSE-APACHE"] {
-        let path = root().join(file);
-        text += &format!("\n{}\n\n{}", "=".repeat(72), fs::read_to_string(&path).map_err(|e| at(&path, e))?);
-    }
-    Ok(text)
-}
-
-/// Writes beside the goal and renames, so that there is never half an FMU.
-fn write_archive(path: &Path, contents: &Contents) -> Result<()> {
+/// Writes beside the goal and renames, so that there is never half an archive.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn write_archive(path: &Path, contents: &Contents) -> Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     fs::create_dir_all(folder).map_err(|e| at(folder, e))?;
     let mut file = tempfile::Builder::new().prefix(".packing-").tempfile_in(folder).map_err(|e| at(folder, e))?;

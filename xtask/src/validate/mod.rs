@@ -2,6 +2,7 @@
 
 mod description;
 
+use crate::binary;
 use crate::error::{Failure, Result, at};
 use crate::platform;
 use crate::xml_tree::Element;
@@ -19,13 +20,6 @@ pub struct Args {
 
 /// Version 2.0 of the zip format: deflate, folders, no zip64.
 const ZIP_VERSION: u16 = 20;
-
-/// The functions of FMI 2.0 that a co-simulation FMU exports.
-const EXPORTS: &str = "fmi2GetTypesPlatform fmi2GetVersion fmi2SetDebugLogging fmi2Instantiate fmi2FreeInstance fmi2SetupExperiment \
-    fmi2EnterInitializationMode fmi2ExitInitializationMode fmi2Terminate fmi2Reset fmi2GetReal fmi2GetInteger fmi2GetBoolean fmi2GetString \
-    fmi2SetReal fmi2SetInteger fmi2SetBoolean fmi2SetString fmi2GetFMUstate fmi2SetFMUstate fmi2FreeFMUstate fmi2SerializedFMUstateSize \
-    fmi2SerializeFMUstate fmi2DeSerializeFMUstate fmi2GetDirectionalDerivative fmi2SetRealInputDerivatives fmi2GetRealOutputDerivatives \
-    fmi2DoStep fmi2CancelStep fmi2GetStatus fmi2GetRealStatus fmi2GetIntegerStatus fmi2GetBooleanStatus fmi2GetStringStatus";
 
 /// Lists all problems.
 pub fn run(args: Args) -> Result<()> {
@@ -64,7 +58,7 @@ pub fn problems(path: &Path) -> Result<Vec<String>> {
             let found = description::problems(&root);
             problems.extend(found.into_iter().map(|p| format!("modelDescription.xml: {p}")));
             if let Some(identifier) = root.child("CoSimulation").and_then(|c| c.get("modelIdentifier")) {
-                binary(&mut archive, identifier, &mut problems);
+                binaries(&mut archive, identifier, &mut problems);
             }
         }
         Err(e) => problems.push(format!("modelDescription.xml: no well-formed XML: {e}")),
@@ -114,17 +108,20 @@ fn read(archive: &mut Archive, name: &str) -> std::result::Result<Vec<u8>, Strin
     Ok(bytes)
 }
 
-/// The binary for this machine, and the names of the exports in it. The names are looked for as bytes, so that the validator need not
-/// run foreign code.
-fn binary(archive: &mut Archive, identifier: &str, problems: &mut Vec<String>) {
-    let path = platform::fmu_library(identifier);
-    match read(archive, &path) {
-        Ok(library) => {
-            let names: std::collections::HashSet<&[u8]> = library.split(|&b| b == 0).collect();
-            let missing = |name: &&str| !names.contains(name.as_bytes()) && !names.contains(format!("_{name}").as_bytes());
-            problems.extend(EXPORTS.split_whitespace().filter(missing).map(|name| format!("{path}: {name} is not exported")));
+/// The libraries for all platforms; one for this machine has to be there. Nothing of them is run.
+fn binaries(archive: &mut Archive, identifier: &str, problems: &mut Vec<String>) {
+    let here = platform::fmu_library(identifier);
+    let ends = [".so", ".dll", ".dylib"].map(|suffix| format!("/{identifier}{suffix}"));
+    let names = archive.file_names().flatten().map(|name| name.into_owned());
+    let paths: Vec<String> = names.filter(|n| n.starts_with("binaries/") && ends.iter().any(|end| n.ends_with(end))).collect();
+    if !paths.contains(&here) {
+        problems.push(format!("{here} is missing: no binary for this platform"));
+    }
+    for path in paths {
+        match read(archive, &path).and_then(|library| binary::inspect(&library).map_err(|e| format!("{path}: {e}"))) {
+            Ok((_, found)) => problems.extend(found.into_iter().map(|p| format!("{path}: {p}"))),
+            Err(problem) => problems.push(problem),
         }
-        Err(_) => problems.push(format!("{path} is missing: no binary for this platform")),
     }
 }
 
