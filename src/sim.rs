@@ -53,6 +53,8 @@ pub enum SimError {
 const STRICTNESS: f64 = 1.5;
 /// Energy defect over the work done from which a run counts as degraded.
 const DEGRADED: f64 = 1e-2;
+/// What is said when numbers overflow.
+const NOT_FINITE: &str = "the outputs are not finite; expected inputs and parameters of a size that ships and cables have";
 
 /// A simulation of one scene.
 #[derive(Clone)]
@@ -96,6 +98,8 @@ struct Work {
     mid: [Vec<f64>; 3],
     /// Factors of the mass matrix where it does not depend on the shape.
     constant_mass: Option<BlockTridiagonal>,
+    /// The outputs at the begin of a step.
+    outputs: Vec<f64>,
 }
 
 impl Simulation {
@@ -125,7 +129,7 @@ impl Simulation {
             method: Rodas4::new(n),
             backup: state.clone(),
             state,
-            work: Work { matrices, force: zeros(), mid: [zeros(), zeros(), zeros()], constant_mass },
+            work: Work { matrices, force: zeros(), mid: [zeros(), zeros(), zeros()], constant_mass, outputs: Vec::new() },
             outputs: Outputs {
                 sheaves: vec![Default::default(); scene.sheaves.len()],
                 cable: crate::outputs::CableOutputs { points: vec![Vector3::zeros(); scene.points], ..Default::default() },
@@ -230,7 +234,7 @@ impl Simulation {
         self.state.ledger = Ledger::start(&self.system.tally, self.state.tension * self.scene.cable.diameter);
         self.outputs.solver = Default::default();
         self.outputs.status = Default::default();
-        Ok(())
+        if self.is_finite() { Ok(()) } else { Err(SimError::Start(NOT_FINITE.into())) }
     }
 
     /// A first sub-step on the scale of the fastest axial wave through the cable.
@@ -299,20 +303,16 @@ impl Simulation {
             return Err(SimError::Step(format!("the end {time} s must lie after the present time {begin} s")));
         }
         self.backup.copy(&self.state);
+        let kept = &mut self.work.outputs;
+        kept.clear();
+        self.outputs.visit(&mut |x| kept.push(*x));
         let (ship, winch) = (self.system.ship.clone(), self.winch_state());
         self.drive(begin, time - begin, inputs);
-        match self.integrate(time) {
-            Ok(()) => {
-                self.system.ship.commit(time);
-                if let FirstEnd::Winch { drive, .. } = &mut self.system.first {
-                    drive.commit(time);
-                }
-                self.system.save_axial(&mut self.state.n);
-                self.conclude();
-                self.observe();
-                Ok(())
-            }
+        match self.integrate(time).and_then(|()| self.arrive(time)) {
+            Ok(()) => Ok(()),
             Err(message) => {
+                let mut kept = self.work.outputs.iter();
+                self.outputs.visit(&mut |x| *x = kept.next().copied().unwrap_or(*x));
                 self.state.copy(&self.backup);
                 self.system.restore_axial(&self.state.n);
                 self.system.ship = ship;
@@ -324,6 +324,18 @@ impl Simulation {
                 Err(SimError::Step(message))
             }
         }
+    }
+
+    /// Commits the state at the end of a step, unless absurd inputs made something overflow.
+    fn arrive(&mut self, time: f64) -> Result<(), String> {
+        self.system.ship.commit(time);
+        if let FirstEnd::Winch { drive, .. } = &mut self.system.first {
+            drive.commit(time);
+        }
+        self.system.save_axial(&mut self.state.n);
+        self.conclude();
+        self.observe();
+        if self.is_finite() { Ok(()) } else { Err(format!("at t = {time} s: {NOT_FINITE}")) }
     }
 
     fn winch_state(&self) -> Option<[f64; 2]> {
@@ -500,6 +512,9 @@ impl Simulation {
             return Err(SimError::State(format!("{} bytes do not fit this scene, which needs {expected}", bytes.len())));
         }
         let mut numbers = bytes.chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().unwrap_or_default()));
+        if !numbers.clone().all(f64::is_finite) {
+            return Err(SimError::State("it holds numbers that are not finite".into()));
+        }
         self.visit(&mut |x| *x = numbers.next().unwrap_or(f64::NAN));
         let t = self.state.time;
         self.system.restore_axial(&self.state.n);
@@ -509,6 +524,13 @@ impl Simulation {
         self.outputs.status.message.clear();
         self.system.set_tolerance(STRICTNESS * self.scene.solver.tolerance, self.state.tension);
         Ok(())
+    }
+
+    /// Whether all numbers of state and outputs are.
+    fn is_finite(&mut self) -> bool {
+        let mut finite = true;
+        self.visit(&mut |x| finite &= x.is_finite());
+        finite
     }
 
     /// Every number of the state and of the outputs, in a fixed order.
@@ -522,7 +544,8 @@ impl Simulation {
         for c in &mut s.counts {
             let mut x = *c as f64;
             visit(&mut x);
-            *c = x as u64;
+            // The largest count that a double holds exactly; only a forged state has more.
+            *c = (x as u64).min(1 << 53);
         }
         s.ledger.visit(visit);
         self.system.ship.visit(visit);

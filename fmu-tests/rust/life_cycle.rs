@@ -415,7 +415,17 @@ fn log_lines_have_listed_categories_and_nothing_to_format() {
 fn absurd_inputs_do_no_lasting_harm() {
     let fmu = Fmu::started();
     fmu.sail(0, 2, 0.01);
-    for (name, value) in [("ship.x", 1e9), ("ship.vx", 1e300), ("winch.setpoint", -1e12)] {
+    let cases = [
+        ("ship.x", 1e9),
+        ("ship.vx", 1e300),
+        ("winch.setpoint", -1e12),
+        // These once made a path of as many pieces as memory has room for.
+        ("winch.gain_rate", 1e300),
+        ("winch.gain_position", 1e300),
+        // The outputs of a step once overflowed and were given out.
+        ("current.x", 1e200),
+    ];
+    for (name, value) in cases {
         let good = fmu.save();
         assert_eq!(fmu.set(name, value), Status::Ok);
         assert!(fmu.step(0.02, 0.01) <= Status::Error);

@@ -270,6 +270,24 @@ mod tests {
         }
     }
 
+    /// The frame that other machines rely on: magic, version, GUID, length, checksum, in these places.
+    #[test]
+    fn frozen_the_frame_is_as_documented() {
+        let bytes = sample().to_bytes();
+        let word = |at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap());
+        assert_eq!(&bytes[..8], b"FAIRLEAD");
+        assert_eq!(bytes[8..12], 1_u32.to_le_bytes());
+        assert_eq!((word(12), &bytes[20..25]), (5, &b"{abc}"[..]));
+        assert_eq!(word(25) as usize, bytes.len() - 25 - 8 - 8);
+        assert_eq!(word(bytes.len() - 8), fnv1a(&bytes[..bytes.len() - 8]));
+        // A later version of the format, itself undamaged.
+        let mut later = bytes[..bytes.len() - 8].to_vec();
+        later[8] = 2;
+        let checksum = fnv1a(&later).to_le_bytes();
+        later.extend(checksum);
+        assert!(Snapshot::from_bytes(&later, "{abc}").unwrap_err().contains("version 2; expected 1"));
+    }
+
     #[test]
     fn truncated_bytes_are_refused() {
         let bytes = sample().to_bytes();

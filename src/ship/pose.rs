@@ -155,7 +155,8 @@ impl ShipDrive {
             }
             let mut count = track.count as f64;
             visit(&mut count);
-            track.count = count as usize;
+            // A saved state may be forged.
+            track.count = (count as usize).min(HISTORY);
             track.seen.iter_mut().chain(&mut track.path.0).for_each(&mut *visit);
             visit(&mut track.raw);
         }

@@ -18,6 +18,8 @@ use nalgebra::Vector3;
 const FINENESS: f64 = 0.03;
 /// Steps per second below which the motion is too slow to matter.
 const LONGEST: f64 = 0.02;
+/// No more pieces than this, however absurd the gains or the step are: they would take all memory.
+const MOST: f64 = 1e6;
 
 /// Room for this many pieces from the start: communication steps up to a second or so allocate nothing.
 const PIECES: usize = 1024;
@@ -76,13 +78,14 @@ impl WinchDrive {
         let a = self.gains[0] * (target[0] - x[0]) + self.gains[1] * (target[1] - x[1]);
         // No faster than reaches the greatest rate within the step.
         let a = a.clamp(-self.limits[1], self.limits[1]);
-        a.clamp((-self.limits[0] - x[1]) / dt, (self.limits[0] - x[1]) / dt)
+        // Not `clamp`: where absurd gains have made the rate infinite the bounds are NaN, and the step fails by itself later.
+        a.max((-self.limits[0] - x[1]) / dt).min((self.limits[0] - x[1]) / dt)
     }
 
     /// Lays the path over the next `h` seconds.
     pub fn advance(&mut self, t: f64, h: f64, sp: &SetpointPath) {
         let fastest = (self.gains[0].sqrt()).max(self.gains[1]).max(FINENESS / LONGEST);
-        let n = (h * fastest / FINENESS).ceil().max(1.0) as usize;
+        let n = (h * fastest / FINENESS).ceil().clamp(1.0, MOST) as usize;
         let dt = h / n as f64;
         self.begin = t;
         self.piece = dt;

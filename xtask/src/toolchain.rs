@@ -25,7 +25,10 @@ impl Toolchain {
     /// Says what is missing and how to get it.
     pub fn find(platform: &Platform) -> Result<Self> {
         let own = |name: &str, fallback: &str| PathBuf::from(env::var_os(name).unwrap_or_else(|| fallback.into()));
-        let candidates = [(own("CARGO", "cargo"), own("RUSTC", "rustc")), ("/usr/bin/cargo".into(), "/usr/bin/rustc".into())];
+        Self::among([(own("CARGO", "cargo"), own("RUSTC", "rustc")), ("/usr/bin/cargo".into(), "/usr/bin/rustc".into())], platform)
+    }
+
+    fn among(candidates: impl IntoIterator<Item = (PathBuf, PathBuf)>, platform: &Platform) -> Result<Self> {
         for (cargo, rustc) in candidates {
             if has_std(&rustc, platform) {
                 return Ok(Self { cargo, rustc, build_std: false });
@@ -92,6 +95,9 @@ impl Toolchain {
     /// Panic messages name source files. Without the folders of this machine in them the bytes are the same wherever it is built.
     fn remap(&self) -> Vec<OsString> {
         let home = env::var_os("CARGO_HOME").map(PathBuf::from).or_else(|| Some(env::home_dir()?.join(".cargo")));
+        // One folder for each registry, named after where it was reached.
+        let sources = home.as_ref().and_then(|home| std::fs::read_dir(home.join("registry/src")).ok());
+        let registries: Vec<_> = sources.into_iter().flatten().flatten().map(|entry| (Some(entry.path()), "crates")).collect();
         let sysroot = output(&self.rustc, &["--print", "sysroot"]).map(|text| PathBuf::from(text).join("lib/rustlib/src/rust"));
         let folders = [(home, "cargo"), (sysroot, "rust"), (Some(root()), "fairlead")];
         let flag = |(folder, name): (Option<PathBuf>, &str)| {
@@ -100,7 +106,8 @@ impl Toolchain {
             flag.push(format!("=/{name}"));
             Some(flag)
         };
-        folders.into_iter().filter_map(flag).collect()
+        // Of several that fit, rustc takes the last.
+        folders.into_iter().chain(registries).filter_map(flag).collect()
     }
 }
 
@@ -120,4 +127,25 @@ fn has_sources(rustc: &Path) -> bool {
 fn output(program: &Path, arguments: &[&str]) -> Option<String> {
     let done = Command::new(program).args(arguments).stdin(Stdio::null()).output().ok()?;
     done.status.success().then(|| String::from_utf8_lossy(&done.stdout).trim_end().to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::platform::PLATFORMS;
+
+    #[test]
+    fn exact_a_rust_without_the_platform_is_told_what_it_lacks() {
+        let message = Toolchain::among([("no cargo".into(), "no rustc".into())], &PLATFORMS[1]).expect_err("no compiler").to_string();
+        for word in ["win64", "rustup target add x86_64-pc-windows-gnu", "rust-src", "apt install"] {
+            assert!(message.contains(word), "{word}: {message}");
+        }
+    }
+
+    #[test]
+    fn exact_the_flags_name_folders_that_hold_sources() {
+        let toolchain = Toolchain { cargo: "cargo".into(), rustc: "rustc".into(), build_std: false };
+        let flags: Vec<String> = toolchain.remap().iter().map(|flag| flag.to_string_lossy().into_owned()).collect();
+        assert!(flags.iter().any(|flag| *flag == format!("--remap-path-prefix={}=/fairlead", root().display())), "{flags:?}");
+    }
 }

@@ -3,11 +3,14 @@
 // Every test program uses a part of it.
 #![allow(dead_code, unsafe_code)]
 
+pub mod random;
+
 use fairlead::fmi::abi::*;
 use fairlead::fmi::exports::*;
 use fairlead::variables::Model;
 use model_description::{Causality, Kind, Value, Variable};
 use std::ffi::{CStr, CString, c_int, c_void};
+use std::path::Path;
 use std::ptr;
 use std::sync::Mutex;
 
@@ -93,11 +96,24 @@ impl Fmu {
     }
 
     pub fn from(request: &Request) -> Self {
+        Self::of(model(), request)
+    }
+
+    /// An instance of the scene in a folder, otherwise as requested.
+    pub fn in_folder(folder: &Path, request: &Request) -> Self {
+        let model = Model::load(Some(folder)).unwrap();
+        let guid = Some(CString::new(model.guid.clone()).unwrap());
+        let location = Some(CString::new(format!("file://{}", folder.display())).unwrap());
+        let Request { name, fmu_type, debug, .. } = request;
+        Self::of(model, &Request { name: name.clone(), fmu_type: *fmu_type, guid, location, debug: *debug })
+    }
+
+    fn of(model: Model, request: &Request) -> Self {
         let messages = Box::<Messages>::default();
         // The struct is gone after the call, as in hosts that keep it on the stack.
         let c = request.send(&callbacks(&messages));
         assert!(!c.is_null(), "{:?}", messages.take());
-        Self { c, model: model(), messages }
+        Self { c, model, messages }
     }
 
     /// At the first communication point.

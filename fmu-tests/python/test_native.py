@@ -1,0 +1,33 @@
+"""A host in C: what ctypes hides (a real printf logger, freed structs), and valgrind's view of the memory."""
+
+import math
+import shutil
+import subprocess
+import sys
+
+import native
+import pytest
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux" or not shutil.which("cc"), reason="needs Linux and a C compiler named cc")
+
+
+@pytest.fixture(scope="module")
+def host(tmp_path_factory):
+    return native.compile_host("cc", tmp_path_factory.mktemp("c") / "drive", "-ldl", "-lm")
+
+
+def test_exact_a_host_in_c_gets_what_fmi_promises(flume, host):
+    command = [host, *native.arguments(flume.folder, "binaries/linux64/flume.so", 1.0)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    rows = native.table(done.stdout)
+    assert len(rows) == 50 and all(math.isfinite(x) for row in rows for x in row)
+
+
+@pytest.mark.skipif(not shutil.which("valgrind"), reason="valgrind is not installed")
+def test_exact_valgrind_finds_nothing(flume, host):
+    """No access to freed or foreign memory, no decision on uninitialized values, no leak over the whole life cycle."""
+    memcheck = ["valgrind", "--quiet", "--error-exitcode=9", "--leak-check=full", "--errors-for-leak-kinds=definite,indirect,possible"]
+    command = [*memcheck, host, *native.arguments(flume.folder, "binaries/linux64/flume.so", 0.04)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
