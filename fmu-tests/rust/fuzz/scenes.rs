@@ -55,7 +55,7 @@ fn damage(text: &mut String, random: &mut Random) {
             let other: Vec<&str> = random.pick(SCENES).text.lines().collect();
             with(Some(format!("{line}\n{}", random.pick(&other))))
         }
-        3 | 4 | 5 => match line.split_once('=') {
+        3..=5 => match line.split_once('=') {
             Some((key, _)) => with(Some(format!("{key}= {}", random.pick(&VALUES)))),
             None => with(Some(line.to_owned())),
         },
