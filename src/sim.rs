@@ -48,8 +48,9 @@ pub enum SimError {
     State(String),
 }
 
-/// Velocity error tolerated per tension error asked for: the estimate is of the lower-order formula, so the solution is better than it says.
-const STRICTNESS: f64 = 3.0;
+/// Velocity error tolerated per tension error asked for: the estimate is of the lower-order formula, so the solution is better than it says; and
+/// the errors of many steps add up. With this the true error is about what was asked for (fmu-tests/rust/convergence.rs).
+const STRICTNESS: f64 = 1.5;
 /// Energy defect over the work done from which a run counts as degraded.
 const DEGRADED: f64 = 1e-2;
 /// What is said when numbers overflow.
@@ -148,6 +149,9 @@ impl Simulation {
         let system = &mut self.system;
         system.keeps_axial = false;
         system.begin = time;
+        if let Some(turbulence) = &mut system.turbulence {
+            turbulence.start = time;
+        }
         system.ship.start(time, &inputs.ship);
         system.ship.advance(time, 1.0, &inputs.ship);
         system.current = std::array::from_fn(|i| Ramp::from(&inputs.current[i]));
@@ -545,6 +549,9 @@ impl Simulation {
         }
         s.ledger.visit(visit);
         self.system.ship.visit(visit);
+        if let Some(turbulence) = &mut self.system.turbulence {
+            visit(&mut turbulence.start);
+        }
         if let FirstEnd::Winch { drive, .. } = &mut self.system.first {
             drive.visit(visit);
         }

@@ -32,6 +32,11 @@ def changed(old, new):
     return FLUME.replace(old, new, 1)
 
 
+def line_of(text, below=0):
+    """`line N` of the scene's first line that is this, or of one so many below."""
+    return f"line {FLUME.splitlines().index(text) + 1 + below}"
+
+
 def number(key, text):
     """The flume scene with another value for a key that is written once."""
     found = re.findall(rf"(?m)^{key} = \S+", FLUME)
@@ -61,7 +66,7 @@ BAD_SCENES = {
     "a name that C refuses": (changed('name = "flume"', 'name = "my flume"'), ["name", "my flume", "identifier"]),
     "no TOML": ("this is not\na scene", ["line 1", "TOML"]),
     "a TOML that breaks off": (FLUME + "\n[solver\n", ["line", "TOML"]),
-    "a key twice": (changed("gravity = 9.81", "gravity = 9.81\ngravity = 9.82"), ["line 10", "duplicate key"]),
+    "a key twice": (changed("gravity = 9.81", "gravity = 9.81\ngravity = 9.82"), [line_of("gravity = 9.81", 1), "duplicate key"]),
     "empty": ("", ["name", "cable", "mesh", "missing"]),
     "no text": (b"\x80\x81\x00\xff", ["UTF-8"]),
     "several faults at once": (number("EA", "-1.0").replace("density", "densite"), ["cable.EA", "fluid.densite", "fluid.density"]),

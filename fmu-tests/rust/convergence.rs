@@ -126,9 +126,9 @@ fn exact_tension_error_follows_the_tolerance() {
                 e
             })
             .collect();
-        // The tolerance is a target, not a bound: errors add up over a run and ring on where little damps them. Seven times (P3) is the worst
-        // seen. P4a's steps are as long as the communication step at 1e-3 already, so there is less to fall.
-        assert!(errors.iter().zip([1e-2, 1e-3, 1e-4, 1e-5]).all(|(e, tolerance)| *e < 8.0 * tolerance), "{name}: {errors:?}");
+        // The tolerance is a target, not a bound: errors add up over a run and ring on where little damps them. Twice (P4b at 1e-3) is the
+        // worst found; half more is allowed.
+        assert!(errors.iter().zip([1e-2, 1e-3, 1e-4, 1e-5]).all(|(e, tolerance)| *e < 3.0 * tolerance), "{name}: {errors:?}");
         assert!(errors[1] > fall * errors[3], "{name}: {errors:?}");
     }
 }

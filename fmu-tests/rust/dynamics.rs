@@ -158,7 +158,7 @@ fn frozen_turning_costs_few_steps() {
     run(&mut sim, 0.1, 20.0, still, |_, _| ());
     let steps = sim.outputs().solver.steps + sim.outputs().solver.rejected;
     println!("pendulum of 20 s: {steps} sub-steps");
-    assert!(steps < 2500, "{steps}"); // 2015; 5857 with the axial force taken from the strain at every stage
+    assert!(steps < 3000, "{steps}"); // 2610; 6887 with the axial force taken from the strain at every stage
 }
 
 #[test]

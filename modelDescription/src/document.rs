@@ -17,6 +17,10 @@ pub struct Document<'a> {
     pub tolerance: f64,
     /// What the scene consists of.
     pub shape: &'a Shape,
+    /// The scene file's text.
+    pub text: &'a str,
+    /// File beside the page that shows the start shape, if there is one.
+    pub picture: Option<&'a str>,
     /// All variables in declaration order.
     pub variables: &'a [Variable],
 }

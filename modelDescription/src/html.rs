@@ -2,6 +2,7 @@
 
 use crate::document::{LOG_CATEGORIES, STATUS_CODES};
 use crate::keys::{Constant, GROUPS, KEYS, Presence};
+use crate::notes::notes;
 use crate::units::type_named;
 use crate::{Causality, Document, Value, Variability, Variable};
 use std::fmt::Write;
@@ -19,6 +20,8 @@ pub fn page(d: &Document) -> String {
         escape(d.guid)
     );
     p += CONTENTS;
+    scene(&mut p, d);
+    p += &format!("{USE}{FILES}");
     p += MODEL;
     p += if d.shape.ned { FRAMES_NED } else { FRAMES_Z_UP };
     p += SIGNS;
@@ -46,13 +49,33 @@ th { background: #f0f4f8; } td:first-child, code { font-family: ui-monospace, mo
 caption { text-align: left; font-weight: bold; padding: 0.4rem 0; }
 ";
 
-const CONTENTS: &str = "<p><a href=\"#model\">Model</a> &middot; <a href=\"#frames\">Frames and signs</a> &middot; <a href=\"#steps\">Steps</a> &middot; \
+const CONTENTS: &str = "<p><a href=\"#about\">This scene</a> &middot; <a href=\"#use\">How to \
+use it</a> &middot; <a href=\"#model\">Model</a> &middot; <a href=\"#frames\">Frames and signs</a> &middot; <a href=\"#steps\">Steps</a> &middot; \
 <a href=\"#variables\">Inputs and outputs</a> &middot; <a href=\"#parameters\">Parameters</a> &middot; <a href=\"#scene\">Scene file</a> &middot; \
 <a href=\"#limits\">Limits</a> &middot; <a href=\"#status\">Errors and status</a></p>\n";
 
+const USE: &str = "<h2 id=\"use\">How to use it</h2>
+<ol>
+<li>Set the parameters that shall differ from the scene's (<a href=\"#parameters\">all of them</a> have defaults).</li>
+<li>Set the inputs for the start time while the FMU initializes: the cable's start shape is found for the ship's pose that is given there. Inputs that
+nobody sets keep the start values listed below; that is a ship at rest, a winch that holds still and no current but the scene's.</li>
+<li>At each communication point set the inputs of that time, then do the step. Give the ship's velocities, and accelerations where the FMU has
+them, with its pose: a pose alone has to be smoothed, which costs delay.</li>
+<li>Look at <code>status.code</code> after each step, in particular if the importing tool ignores what a step returns.</li>
+</ol>
+<p>Feed <code>ship.force</code> and <code>ship.moment</code>, or <code>ship.force_world</code>, back to a ship that the cable shall pull at. Outputs have no
+direct feed-through: they change at the end of a step only, so that a loop through the FMU is no algebraic one.</p>
+";
+
+const FILES: &str = "<p>In this archive besides: <code>resources/scene.toml</code>, the scene as a text that fairlead packs again after changes;
+<code>terminalsAndIcons</code>, inputs and outputs grouped for tools that connect whole vectors; <code>documentation/licenses</code>. The groups are also
+in <code>NAME_OspModelDescription.xml</code> for OSP, and all parameters in <code>NAME.ssv</code> for SSP, both written beside the FMU with
+<code>cargo xtask package --osp --ssp</code>.</p>
+";
+
 const MODEL: &str = "<h2 id=\"model\">Model</h2>
 <p>The cable is a chain of gradient-deficient elements of the absolute nodal coordinate formulation (Gerstmayr and Shabana 2006): geometrically
-exact stretching and bending, no torsion. Water acts by buoyancy, drag, added mass and current on the submerged part only. Contact with drums and
+exact stretching and bending, no torsion. Water acts by buoyancy, drag, added mass and current on the submerged part only. The current may carry turbulence: seeded noise of a given spectrum, uniform in space. Contact with drums and
 sheaves is a line contact after Hunt and Crossley, integrated over the arcs that touch. A V groove has two flanks; their force fades over the last
 tenth of the groove's depth, and beside the rim, so that a cable can climb out and is then free. Friction on a sheave is Coulomb's, fading below a
 slip of 1 mm/s. The cable's first node is driven exactly along the winch drum, or fixed at an anchor.</p>
@@ -62,13 +85,15 @@ span, N + &frac12;EI&kappa;&sup2; at the end of the contact arc. In water all of
 
 const FRAMES_Z_UP: &str = "<h2 id=\"frames\">Frames and signs</h2>
 <p><b>This FMU uses z up.</b> Inertial frame: x and y horizontal, z up, origin anywhere; the still water surface is at
-z = <code>fluid.waterline</code>. Ship frame: origin at the ship's reference point (centre of gravity), x forward, y to port, z up.</p>
+z = <code>fluid.waterline</code>. Ship frame: origin at the ship's reference point (centre of gravity), x forward, y to port, z up.
+Positive roll is starboard down, positive pitch bow down, positive yaw bow to port.</p>
 ";
 
 const FRAMES_NED: &str = "<h2 id=\"frames\">Frames and signs</h2>
 <p><b>This FMU uses z down (NED).</b> Inertial frame: x north, y east, z down; the still water surface is at
 z = <code>fluid.waterline</code>. Ship frame: origin at the ship's reference point (centre of gravity), x forward, y to starboard, z down. Every
-inertial and ship quantity of the scene file, of the parameters, inputs and outputs is given in these frames.</p>
+inertial and ship quantity of the scene file, of the parameters, inputs and outputs is given in these frames.
+Positive roll is starboard down, positive pitch bow up, positive yaw bow to starboard.</p>
 ";
 
 const SIGNS: &str = "<p>Attitude: R = R<sub>z</sub>(yaw) R<sub>y</sub>(pitch) R<sub>x</sub>(roll) takes ship components to inertial ones. The rates are the
@@ -90,13 +115,35 @@ Outputs are those of the last communication point. The state can be saved, resto
 
 const LIMITS: &str = "<h2 id=\"limits\">Limits</h2>
 <ul>
-<li>No torsion, no contact of the cable with itself or with the sea bed, one layer on the drum.</li>
-<li>The water surface is still; waves act through the ship's motion only. The current is horizontal and does not change along x and y.</li>
+<li>No torsion, no contact of the cable with itself or with the sea bed, one layer on the drum and no friction
+there.</li>
+<li>The section is linearly elastic: EA and EI do not change with load. The drag of <code>cd = \"cylinder\"</code> is that of a smooth cylinder for Reynolds
+numbers up to 2&middot;10<sup>5</sup>, of <code>\"sphere\"</code> up to 3&middot;10<sup>5</sup>, and is held constant beyond.</li>
+<li>The water surface is still; waves act through the ship's motion only. The current's profile is horizontal and does not change along x and y; its turbulence is the same everywhere.</li>
 <li>A cable without bending stiffness (EI = 0) has no defined shape where it is slack.</li>
 <li>With <code>cable.compression = \"linear\"</code> a slack cable buckles at the mesh's wavelength; snap loads are then not to be trusted.</li>
 <li>Pitch stays within &plusmn;90&deg; (Euler angles).</li>
 </ul>
 ";
+
+/// What the scene file says in its comments, and the picture of its start shape.
+fn scene(p: &mut String, d: &Document) {
+    let notes = notes(d.text);
+    *p += "<h2 id=\"about\">This scene</h2>\n";
+    if let Some(picture) = d.picture {
+        *p += &format!("<p><img src=\"{}\" alt=\"The cable's start shape from the side\"></p>\n", escape(picture));
+    }
+    for paragraph in &notes.preface {
+        *p += &format!("<p>{}</p>\n", escape(paragraph));
+    }
+    if !notes.remarks.is_empty() {
+        *p += "<table>\n<caption>Remarks in the scene file</caption>\n<tr><th>Key</th><th>Value there</th><th>Remark</th></tr>\n";
+        for r in &notes.remarks {
+            *p += &format!("<tr><td>{}</td><td>{}</td><td>{}</td></tr>\n", escape(&r.key), escape(&r.value), escape(&r.text));
+        }
+        *p += "</table>\n";
+    }
+}
 
 fn variables(p: &mut String, title: &str, causality: Causality, all: &[Variable]) {
     let mut rows = all.iter().filter(|v| v.causality == causality).peekable();

@@ -6,12 +6,21 @@
 //! This crate knows FMI and names, but no physics and no file format of scenes.
 
 mod document;
+#[cfg(feature = "xml")]
+mod groups;
 pub mod guid;
 pub mod html;
 pub mod keys;
+pub mod notes;
+#[cfg(feature = "xml")]
+pub mod osp;
 mod pattern;
 pub mod scenes;
+#[cfg(feature = "xml")]
+pub mod ssp;
 pub mod table;
+#[cfg(feature = "xml")]
+pub mod terminals;
 pub mod units;
 #[cfg(feature = "xml")]
 pub mod xml;
@@ -97,6 +106,8 @@ pub struct Shape {
     pub sheaves: Vec<SheaveShape>,
     /// There is water.
     pub fluid: bool,
+    /// Its current is turbulent.
+    pub noise: bool,
     /// There is a towed body.
     pub body: bool,
     /// It takes an external force.

@@ -88,6 +88,8 @@ pub enum Output {
     FarEndForce(usize),
     /// `far_end.tension`.
     FarEndTension,
+    /// Turbulence of the current: component.
+    CurrentNoise(usize),
     /// `status.code`.
     StatusCode,
     /// `status.message`.
@@ -277,6 +279,7 @@ pub static FAMILIES: &[Family] = &[
     output(173, "load.angle", LOAD, Real(&u::ARC_ANGLE), |_, _| Output::LoadAngle, "Angle of the load's link from the vertical"),
     output(174, "far_end.force.{x,y,z}", FAR_END, Real(&u::FORCE), |_, c| Output::FarEndForce(c), "Force of the cable on what holds its far end, inertial frame, {}"),
     output(175, "far_end.tension", FAR_END, Real(&u::FORCE), |_, _| Output::FarEndTension, "Axial force of the cable at its far end"),
+    output(176, "current.noise.{x,y,z}", If(|s| s.noise), Real(&u::VELOCITY), |_, c| Output::CurrentNoise(c), "Turbulence of the current in the inertial frame, part of what the water does, {}"),
     output(180, "status.code", Always, Integer, |_, _| Output::StatusCode, "0 fine, 1 degraded (results still usable, see status.message), 2 stopped (outputs keep the last good values)"),
     output(181, "status.message", Always, Text, |_, _| Output::StatusMessage, "Why the status code is not 0; empty when all is fine"),
     output(190, "solver.steps", Always, Integer, |_, _| Output::SolverSteps, "Accepted sub-steps since the start"),

@@ -38,6 +38,7 @@ pub static UNITS: &[Unit] = &[
     unit("m4", &[("m", 4)], &[shown("mm4", 1e12)]),
     unit("s", &[("s", 1)], &[shown("ms", 1e3)]),
     unit("1/s", &[("s", -1)], &[]),
+    unit("Hz", &[("s", -1)], &[]),
     unit("1/s2", &[("s", -2)], &[]),
     unit("s/m", &[("s", 1), ("m", -1)], &[]),
     unit("m/s", &[("m", 1), ("s", -1)], &[shown("kn", 3600.0 / 1852.0)]),
@@ -133,6 +134,8 @@ types! {
     SECOND_MOMENT = of("SecondMomentOfArea", "SecondMomentOfArea", "m4").not_negative();
     /// A duration.
     DURATION = of("Duration", "Time", "s").not_negative();
+    /// A frequency.
+    FREQUENCY = of("Frequency", "Frequency", "Hz").not_negative();
     /// An angle.
     ANGLE = of("Angle", "Angle", "rad").display("deg").nominal(1.0);
     /// The angle of an arc.
@@ -197,6 +200,8 @@ types! {
     DIRECTION = number("Direction", "Direction");
     /// A Reynolds number.
     REYNOLDS = number("ReynoldsNumber", "ReynoldsNumber").not_negative();
+    /// A level difference in decibels, which FMI's base units do not know.
+    LEVEL = number("Level", "LevelDifference");
     /// A share of something.
     RATIO = number("Ratio", "Ratio");
 }

@@ -1,7 +1,7 @@
 //! modelDescription.xml (FMI 2.0.5, co-simulation).
 
 use crate::document::LOG_CATEGORIES;
-use crate::units::{TYPES, Type, UNITS};
+use crate::units::{TYPES, Type, UNITS, Unit};
 use crate::{Causality, Document, Kind, Value, Variability, Variable};
 use quick_xml::events::{BytesDecl, Event};
 use quick_xml::writer::Writer;
@@ -10,18 +10,16 @@ use std::io;
 /// Generation date that is written into every FMU: a fixed one, so that equal inputs give equal bytes.
 const GENERATION_DATE: &str = "2025-01-01T00:00:00Z";
 /// Default experiment: start, stop and communication step, s.
-const EXPERIMENT: (f64, f64, f64) = (0.0, 60.0, 0.01);
+pub(crate) const EXPERIMENT: (f64, f64, f64) = (0.0, 60.0, 0.01);
 
-type Xml = Writer<Vec<u8>>;
-type Attributes = Vec<(&'static str, String)>;
+pub(crate) type Xml = Writer<Vec<u8>>;
+pub(crate) type Attributes = Vec<(&'static str, String)>;
 
 /// The text of modelDescription.xml.
 ///
 /// # Errors
 /// None in practice: writing goes to memory.
 pub fn model_description(d: &Document) -> io::Result<Vec<u8>> {
-    let mut w = Writer::new_with_indent(Vec::new(), b' ', 2);
-    w.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
     let root = vec![
         ("fmiVersion", "2.0".into()),
         ("modelName", d.name.into()),
@@ -36,7 +34,7 @@ pub fn model_description(d: &Document) -> io::Result<Vec<u8>> {
         ("variableNamingConvention", "structured".into()),
         ("numberOfEventIndicators", "0".into()),
     ];
-    parent(&mut w, "fmiModelDescription", root, |w| {
+    document("fmiModelDescription", root, |w| {
         leaf(w, "CoSimulation", capabilities(d.name))?;
         units(w, d.variables)?;
         types(w, d.variables)?;
@@ -50,10 +48,7 @@ pub fn model_description(d: &Document) -> io::Result<Vec<u8>> {
         leaf(w, "DefaultExperiment", experiment.map(|(name, value)| (name, number(value))).into())?;
         parent(w, "ModelVariables", vec![], |w| d.variables.iter().try_for_each(|v| variable(w, v)))?;
         structure(w, d.variables)
-    })?;
-    let mut text = w.into_inner();
-    text.push(b'\n');
-    Ok(text)
+    })
 }
 
 fn capabilities(name: &str) -> Attributes {
@@ -70,11 +65,11 @@ fn capabilities(name: &str) -> Attributes {
 }
 
 /// The types that some variable uses.
-fn used_types(variables: &[Variable]) -> impl Iterator<Item = &'static Type> {
+pub(crate) fn used_types(variables: &[Variable]) -> impl Iterator<Item = &'static Type> {
     TYPES.iter().copied().filter(|t| variables.iter().any(|v| v.declared_type == Some(t.name)))
 }
 
-fn units(w: &mut Xml, variables: &[Variable]) -> io::Result<()> {
+pub(crate) fn units(w: &mut Xml, variables: &[Variable]) -> io::Result<()> {
     let used: Vec<_> = UNITS.iter().filter(|u| used_types(variables).any(|t| t.unit == Some(u.name))).collect();
     if used.is_empty() {
         return Ok(());
@@ -82,14 +77,17 @@ fn units(w: &mut Xml, variables: &[Variable]) -> io::Result<()> {
     parent(w, "UnitDefinitions", vec![], |w| {
         used.iter().try_for_each(|u| {
             parent(w, "Unit", vec![("name", u.name.into())], |w| {
-                // The schema fixes no order of attributes, but readers like the usual one.
-                let base = ["kg", "m", "s", "rad"].into_iter();
-                let base = base.filter_map(|b| u.base.iter().find(|(name, _)| *name == b)).map(|&(name, power)| (name, power.to_string()));
-                leaf(w, "BaseUnit", base.collect())?;
+                leaf(w, "BaseUnit", base_unit(u))?;
                 u.display.iter().try_for_each(|s| leaf(w, "DisplayUnit", vec![("name", s.name.into()), ("factor", number(s.factor))]))
             })
         })
     })
+}
+
+/// Exponents of the base units. The schemas fix no order of attributes, but readers like the usual one.
+pub(crate) fn base_unit(unit: &Unit) -> Attributes {
+    let base = ["kg", "m", "s", "rad"].into_iter();
+    base.filter_map(|b| unit.base.iter().find(|(name, _)| *name == b)).map(|&(name, power)| (name, power.to_string())).collect()
 }
 
 fn types(w: &mut Xml, variables: &[Variable]) -> io::Result<()> {
@@ -174,16 +172,28 @@ pub fn literal(value: &Value) -> String {
     }
 }
 
-fn number(x: f64) -> String {
+pub(crate) fn number(x: f64) -> String {
     format!("{x:?}")
 }
 
-fn leaf(w: &mut Xml, name: &str, attributes: Attributes) -> io::Result<()> {
+/// A whole document: declaration, root element, line end.
+pub(crate) fn document(name: &str, attributes: Attributes, inside: impl FnOnce(&mut Xml) -> io::Result<()>) -> io::Result<Vec<u8>> {
+    let mut w = Writer::new_with_indent(Vec::new(), b' ', 2);
+    w.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
+    parent(&mut w, name, attributes, inside)?;
+    let mut text = w.into_inner();
+    text.push(b'\n');
+    Ok(text)
+}
+
+/// An element without content.
+pub(crate) fn leaf(w: &mut Xml, name: &str, attributes: Attributes) -> io::Result<()> {
     let attributes = attributes.iter().map(|(name, value)| (*name, value.as_str()));
     w.create_element(name).with_attributes(attributes).write_empty().map(|_| ())
 }
 
-fn parent(w: &mut Xml, name: &str, attributes: Attributes, inside: impl FnOnce(&mut Xml) -> io::Result<()>) -> io::Result<()> {
+/// An element with content.
+pub(crate) fn parent(w: &mut Xml, name: &str, attributes: Attributes, inside: impl FnOnce(&mut Xml) -> io::Result<()>) -> io::Result<()> {
     let attributes = attributes.iter().map(|(name, value)| (*name, value.as_str()));
     w.create_element(name).with_attributes(attributes).write_inner_content(inside).map(|_| ())
 }

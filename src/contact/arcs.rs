@@ -54,6 +54,57 @@ pub struct Arc {
     pub moving: [bool; 2],
 }
 
+/// A curve at the ends of the search's intervals, from `start` on: what the gaps to all faces of a surface need, computed side by side.
+#[derive(Clone, Copy, Debug)]
+pub struct Samples {
+    start: f64,
+    /// Along the axis, with its derivative by ξ.
+    axial: [[f64; INTERVALS + 1]; 2],
+    /// ρ² − R² of a cylinder, ρ − R of a groove, with its derivative by ξ.
+    radial: [[f64; INTERVALS + 1]; 2],
+}
+
+impl Samples {
+    /// Of a curve in the surface's axes.
+    #[inline(always)]
+    pub fn new(surface: &Surface, curve: &Cubic, start: f64) -> Self {
+        let mut out = Self { start, axial: [[0.0; INTERVALS + 1]; 2], radial: [[0.0; INTERVALS + 1]; 2] };
+        let k = &curve.0;
+        let x: [f64; INTERVALS + 1] = std::array::from_fn(|i| if i == 0 { start } else { i as f64 / INTERVALS as f64 });
+        let at = |c: usize, x: f64| k[0][c] + x * (k[1][c] + x * (k[2][c] + x * k[3][c]));
+        let slope = |c: usize, x: f64| k[1][c] + x * (2.0 * k[2][c] + x * 3.0 * k[3][c]);
+        let plain = surface.groove.is_none();
+        for i in 0..=INTERVALS {
+            let (a, b) = (at(1, x[i]), at(2, x[i]));
+            out.radial[0][i] = a * a + b * b;
+            out.radial[1][i] = a * slope(1, x[i]) + b * slope(2, x[i]);
+        }
+        if plain {
+            for i in 0..=INTERVALS {
+                out.radial[0][i] -= surface.radius * surface.radius;
+                out.radial[1][i] += out.radial[1][i];
+            }
+            return out;
+        }
+        for i in 0..=INTERVALS {
+            let rho = out.radial[0][i].sqrt();
+            out.radial[0][i] = rho - surface.radius;
+            out.radial[1][i] /= rho;
+            out.axial[0][i] = at(0, x[i]);
+            out.axial[1][i] = slope(0, x[i]);
+        }
+        out
+    }
+
+    /// ξ, the gap to a face and its derivative.
+    #[inline(always)]
+    fn gap(&self, i: usize, face: Face) -> (f64, (f64, f64)) {
+        let x = if i == 0 { self.start } else { i as f64 / INTERVALS as f64 };
+        let of = |k: usize| face.axial * self.axial[k][i] + face.radial * self.radial[k][i];
+        (x, (of(0), of(1)))
+    }
+}
+
 /// A curve against one face.
 #[derive(Clone, Copy, Debug)]
 pub struct Touch<'a> {
@@ -69,7 +120,7 @@ impl Touch<'_> {
     /// A measure of the gap at ξ, and its derivative by ξ: the gap itself, of a cylinder ρ² − R², which has the same sign and roots and needs
     /// no square root.
     #[inline(always)]
-    pub fn gap(&self, x: f64) -> (f64, f64) {
+    fn gap(&self, x: f64) -> (f64, f64) {
         let (s, d) = (self.curve.at(x), self.curve.slope(x));
         let Face { axial, radial } = self.face;
         let (square, rate) = (s[1] * s[1] + s[2] * s[2], s[1] * d[1] + s[2] * d[2]);
@@ -105,24 +156,24 @@ impl Touch<'_> {
         x
     }
 
-    /// Calls `found` with the arcs of [`start`, 1] in contact, in order.
-    #[inline]
-    pub fn arcs(&self, start: f64, mut found: impl FnMut(Arc)) {
+    /// Calls `found` with the arcs in contact, in order.
+    #[inline(always)]
+    pub fn arcs(&self, samples: &Samples, mut found: impl FnMut(Arc)) {
+        let start = samples.start;
         let mut open: Option<f64> = None;
         let mut cross = |x: f64| match open.take() {
             Some(from) => found(Arc { from, to: x, moving: [from > start, true] }),
             None => open = Some(x),
         };
-        let (mut x0, (mut g0, mut d0)) = (start, self.gap(start));
+        let (mut x0, (mut g0, mut d0)) = samples.gap(0, self.face);
         if g0 < 0.0 {
             cross(start);
         }
         for k in 1..=INTERVALS {
-            let x1 = k as f64 / INTERVALS as f64;
-            let (g1, d1) = self.gap(x1);
+            let (x1, (g1, d1)) = samples.gap(k, self.face);
             if (g0 < 0.0) != (g1 < 0.0) {
                 cross(self.root((x0, g0), (x1, g1)));
-            } else if (d0 < 0.0) != (d1 < 0.0) && (d0 < 0.0) == (g0 >= 0.0) {
+            } else if (d0 < 0.0) != (d1 < 0.0) && (d0 < 0.0) == (g0 >= 0.0) && may_cross((g0, d0), (g1, d1), x1 - x0) {
                 // An extremum towards the other side.
                 let x = turning_point(|x| self.gap(x).1, (x0, d0), (x1, d1));
                 let g = self.gap(x).0;
@@ -139,11 +190,21 @@ impl Touch<'_> {
     }
 }
 
+/// Whether a gap of one sign and with these slopes at the ends of an interval may have the other sign between. It dips no deeper than the
+/// tangents' meeting point, if it is as smooth as its samples let one think; twice as deep is allowed for.
+#[inline(always)]
+fn may_cross((g0, d0): (f64, f64), (g1, d1): (f64, f64), length: f64) -> bool {
+    let x = ((g1 - g0 - d1 * length) / (d0 - d1)).clamp(0.0, length);
+    let dip = (d0 * x).abs().max((d1 * (length - x)).abs());
+    2.0 * dip >= g0.abs().min(g1.abs())
+}
+
 /// A root of the slope `f` in a bracket of (x, f(x)), by the Illinois form of the false position.
 fn turning_point(f: impl Fn(f64) -> f64, (mut a, mut fa): (f64, f64), (mut b, mut fb): (f64, f64)) -> f64 {
     for _ in 0..60 {
         let x = (a * fb - b * fa) / (fb - fa);
-        if !(x > a.min(b) && x < a.max(b)) || (b - a).abs() < 1e-15 {
+        // What lies within a millionth of an element around an extremum differs from it by a millionth of a millionth.
+        if !(x > a.min(b) && x < a.max(b)) || (b - a).abs() < 1e-6 {
             break;
         }
         let fx = f(x);
@@ -182,7 +243,7 @@ mod tests {
             let curve = Cubic::hermite(&line, 1.0);
             let touch = Touch { surface: &surface, face: surface.faces().0[0], curve: &curve };
             let mut arcs = vec![];
-            touch.arcs(0.0, |a| arcs.push(a));
+            touch.arcs(&Samples::new(&surface, &curve, 0.0), |a| arcs.push(a));
             assert_eq!(arcs.len(), 1, "{depth}");
             let half = 0.5 * (1.0 - up * up).sqrt();
             assert!((arcs[0].from - (0.44 - half)).abs() < 1e-12 && (arcs[0].to - (0.44 + half)).abs() < 1e-12, "{depth}: {arcs:?}");

@@ -35,6 +35,22 @@ pub fn pressure(law: &Contact, depth: f64, rate: f64) -> Pressure {
     Pressure { force: elastic * gain, by_depth: law.exponent * elastic / depth * gain, by_rate: elastic * law.damping }
 }
 
+/// δⁿ of several depths, none negative.
+#[inline(always)]
+pub fn powers<const N: usize>(exponent: f64, depth: &[f64; N]) -> [f64; N] {
+    let mut out = *depth;
+    if exponent == 1.5 {
+        for x in &mut out {
+            *x *= x.sqrt();
+        }
+    } else if exponent != 1.0 {
+        for x in &mut out {
+            *x = x.powf(exponent);
+        }
+    }
+    out
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

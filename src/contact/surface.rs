@@ -164,6 +164,48 @@ impl Surface {
         }
     }
 
+    /// Loads without friction on points side by side at `s` that move with `v`, as in [`Surface::load`]: forces and their sizes, N/m.
+    #[inline(always)]
+    pub fn normal_loads<const N: usize>(
+        &self,
+        face: Face,
+        s: &[[f64; N]; 3],
+        v: &[[f64; N]; 3],
+        f: &mut [[f64; N]; 3],
+        normal: &mut [f64; N],
+    ) {
+        let mut depth = [0.0; N];
+        let (mut n, mut gain) = ([[0.0; N]; 3], [0.0; N]);
+        for i in 0..N {
+            let rho = (s[1][i] * s[1][i] + s[2][i] * s[2][i]).sqrt();
+            let h = rho - self.radius;
+            depth[i] = (-(face.axial * s[0][i] + face.radial * h)).max(0.0);
+            n[0][i] = face.axial;
+            n[1][i] = face.radial * s[1][i] / rho;
+            n[2][i] = face.radial * s[2][i] / rho;
+            let rate = n[0][i] * v[0][i] + n[1][i] * v[1][i] + n[2][i] * v[2][i];
+            gain[i] = (1.0 - self.law.damping * rate).max(0.0);
+        }
+        let powers = hunt_crossley::powers(self.law.exponent, &depth);
+        for i in 0..N {
+            normal[i] = self.law.stiffness * powers[i] * gain[i];
+        }
+        if let Some(g) = &self.groove
+            && g.depth.is_finite()
+        {
+            for i in 0..N {
+                let rho = (s[1][i] * s[1][i] + s[2][i] * s[2][i]).sqrt();
+                normal[i] *= g.extent(rho - self.radius, s[0][i].abs()).0;
+            }
+        }
+        for c in 0..3 {
+            for i in 0..N {
+                // On the axis itself there is no direction, and no load.
+                f[c][i] = if normal[i] > 0.0 { normal[i] * n[c][i] } else { 0.0 };
+            }
+        }
+    }
+
     /// Load on a point at `s` that moves with `v` relative to the ship while the surface turns at `spin` (rad/s); `None` without contact.
     #[inline(always)]
     pub fn load<const TANGENT: bool>(&self, face: Face, s: &Vec3<f64>, v: &Vec3<f64>, spin: f64) -> Option<PointLoad> {
@@ -281,6 +323,28 @@ mod tests {
             }
         }
         assert!(touched >= 8, "{touched}");
+    }
+
+    #[test]
+    fn exact_points_side_by_side_feel_what_one_feels() {
+        let places = [[0.03, -0.31, 0.38], [0.06, -0.43, 0.413], [0.11, 0.33, 0.4], [0.0, 0.6, 0.0]];
+        let (s, v) = ([0, 1, 2].map(|c| places.map(|p| p[c])), [[0.4, -0.4, 9.0, 0.1]; 3]);
+        for surface in surfaces().into_iter().filter(|s| s.friction.is_none()) {
+            for exponent in [1.0, 1.5, 2.2] {
+                let surface = Surface { law: Contact { exponent, ..surface.law }, ..surface.clone() };
+                let (faces, n) = surface.faces();
+                for face in &faces[..n] {
+                    let (mut f, mut normal) = ([[0.0; 4]; 3], [0.0; 4]);
+                    surface.normal_loads(*face, &s, &v, &mut f, &mut normal);
+                    for (i, place) in places.iter().enumerate() {
+                        let one = surface.load::<false>(*face, place, &[v[0][i], v[1][i], v[2][i]], 0.0);
+                        let (of, on) = one.map_or(([0.0; 3], 0.0), |l| (l.f, l.normal));
+                        // Rounding of forces up to 1e5 N/m.
+                        assert!((normal[i] - on).abs() < 1e-9 && (0..3).all(|c| (f[c][i] - of[c]).abs() < 1e-9), "{face:?} {place:?}");
+                    }
+                }
+            }
+        }
     }
 
     #[test]

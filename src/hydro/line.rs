@@ -362,6 +362,7 @@ mod tests {
             drag,
             added_mass: 1.0,
             current: vec![[-5.0, 0.1, 0.2], [0.0, 0.4, -0.1], [3.0, 0.5, 0.3]],
+            noise: None,
         };
         [
             Drag::LoadingFunctions { cd: Coefficient::Constant(1.2), amplification: 1.7 },

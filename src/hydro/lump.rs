@@ -101,6 +101,7 @@ mod tests {
             drag: Drag::CrossFlow { normal: Coefficient::Constant(1.0), tangential: 0.0, amplification: 1.0 },
             added_mass: 1.0,
             current: vec![],
+            noise: None,
         };
         let body = Body {
             mass: 1.33e-3,

@@ -4,3 +4,4 @@ pub mod curve;
 pub mod line;
 pub mod lump;
 pub mod surface;
+pub mod turbulence;

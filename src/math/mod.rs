@@ -1,6 +1,8 @@
 //! Small mathematics that several rooms share.
 
+pub mod chebyshev2;
 pub mod interpolation;
 pub mod jet;
 pub mod lanes;
 pub mod quadrature;
+pub mod ring;

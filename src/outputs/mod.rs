@@ -28,6 +28,8 @@ pub struct Outputs {
     pub load: LoadOutputs,
     /// The fixed far end.
     pub far_end: FarEndOutputs,
+    /// Turbulence of the current, world, m/s.
+    pub current_noise: Vector3<f64>,
     /// Solver statistics.
     pub solver: SolverOutputs,
     /// How the run fares.
@@ -230,6 +232,7 @@ impl Outputs {
         visit(&mut self.load.angle);
         vector(&mut self.far_end.force, visit);
         visit(&mut self.far_end.tension);
+        vector(&mut self.current_noise, visit);
         for n in [&mut self.solver.steps, &mut self.solver.rejected, &mut self.solver.iterations] {
             count(n, visit);
         }

@@ -71,6 +71,9 @@ pub fn observe(system: &System, env: &Environment, u: &[f64], w: &[f64], f: &[f6
     out.body.velocity = Vector3::from_fn(|c, _| w[at + c] + env.base[c].0[1]);
     out.body.tension = nodal_tension(system, u, last + 1);
     load(system, u, w, out);
+    if let Some(turbulence) = &system.turbulence {
+        out.current_noise = turbulence.at(env.time)[0].into();
+    }
     if system.far_end.is_some() {
         out.far_end.force = Vector3::new(f[at], f[at + 1], f[at + 2]);
         out.far_end.tension = out.body.tension;

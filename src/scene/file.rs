@@ -195,6 +195,7 @@ struct FluidTable {
 struct CurrentTable {
     #[serde(default)]
     profile: Vec<[f64; 3]>,
+    noise: Option<Noise>,
 }
 
 #[derive(Deserialize)]
@@ -339,7 +340,7 @@ impl MeshTable {
 
 impl FluidTable {
     fn checked(self, frame: Frame) -> Fluid {
-        let mut current: Vec<[f64; 3]> = self.current.profile;
+        let CurrentTable { profile: mut current, noise } = self.current;
         let height = |z: f64| if frame == Frame::Ned { -z } else { z };
         if frame == Frame::Ned {
             current.iter_mut().for_each(|[z, _, vy]| (*z, *vy) = (-*z, -*vy));
@@ -352,6 +353,7 @@ impl FluidTable {
             drag: self.drag,
             added_mass: self.added_mass,
             current,
+            noise,
         }
     }
 }

@@ -116,6 +116,27 @@ pub struct Fluid {
     pub added_mass: f64,
     /// (z, v_x, v_y), ascending in z, constant beyond the ends; m, m/s. Empty: no current.
     pub current: Vec<[f64; 3]>,
+    /// Turbulence of the current; `None`: it is steady.
+    pub noise: Option<Noise>,
+}
+
+/// Turbulence: white noise through a Chebyshev-II low-pass, uniform in space. The realization belongs to z-up axes.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+pub struct Noise {
+    /// Standard deviations along x, y, z, m/s.
+    pub std_dev: [f64; 3],
+    /// Which realization.
+    pub seed: u32,
+    /// Samples per second, Hz.
+    pub sample_rate: f64,
+    /// Order of the filter.
+    pub order: usize,
+    /// Where its stop band begins, Hz.
+    pub cutoff: f64,
+    /// Attenuation there, dB.
+    pub attenuation: f64,
+    /// Time in which the noise grows out of the mean current after the start, s.
+    pub ramp: f64,
 }
 
 /// The cable's drag law.

@@ -17,6 +17,7 @@ pub(super) fn check(tree: &Table, problems: &mut Problems) {
     directions(tree, problems);
     ascending_tables(tree, problems);
     viscosity(tree, problems);
+    noise(tree, problems);
     setpoint(tree, problems);
     turning_sheaves(tree, problems);
     initial(tree, problems);
@@ -135,6 +136,25 @@ fn viscosity(tree: &Table, problems: &mut Problems) {
         |(form, name, value): (Form, String, &Value)| (matches!(form, Form::Coefficient) && !value.is_float()).then_some(name);
     if let Some(name) = values(tree).find_map(of_reynolds) {
         problems.add("fluid.viscosity", format!("missing; {name} depends on the Reynolds number, so a number > 0 in Pa.s is expected"));
+    }
+}
+
+/// Greatest number of samples in a cut-off period: keeps the filter's response to some ten thousand samples.
+const OVERSAMPLING: f64 = 1e3;
+
+fn noise(tree: &Table, problems: &mut Problems) {
+    let deviations = get(tree, "fluid.current.noise.std_dev").and_then(Value::as_array);
+    if let Some(x) = deviations.and_then(|a| a.iter().filter_map(Value::as_float).find(|x| *x < 0.0)) {
+        problems.add_once("fluid.current.noise.std_dev", format!("found {x}; expected three numbers >= 0 in m/s"));
+    }
+    if let (Some(rate), Some(cutoff)) = (real(tree, "fluid.current.noise.sample_rate"), real(tree, "fluid.current.noise.cutoff")) {
+        let (low, high) = (rate / OVERSAMPLING, 0.5 * rate);
+        if !(low..high).contains(&cutoff) {
+            let message = format!(
+                "found {cutoff}; expected at least {low} and less than {high} Hz, a thousandth and half of fluid.current.noise.sample_rate"
+            );
+            problems.add_once("fluid.current.noise.cutoff", message);
+        }
     }
 }
 

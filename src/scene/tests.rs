@@ -39,7 +39,7 @@ viscosity = 1e-3
 waterline = 1
 drag = { law = "cross_flow", cd_normal = [[1, 10], [1000, 1.0]], cd_tangential = 0.01, amplification = 1.5 }
 added_mass = 1
-current.profile = [[0, 1, 2], [-5, 3, 4]]
+current = { profile = [[0, 1, 2], [-5, 3, 4]], noise = { std_dev = [0.1, 0.2, 0], seed = 3, cutoff = 5 } }
 [ship]
 input = "pose"
 frame = "ned"
@@ -97,6 +97,8 @@ fn exact_full_scene_is_read() {
     assert_eq!((fluid.waterline, fluid.current), (-1.0, vec![[-0.0, 1.0, -2.0], [5.0, 3.0, -4.0]]));
     let drag = Drag::CrossFlow { normal: Coefficient::Table(vec![[1.0, 10.0], [1000.0, 1.0]]), tangential: 0.01, amplification: 1.5 };
     assert_eq!(fluid.drag, drag);
+    let noise = Noise { std_dev: [0.1, 0.2, 0.0], seed: 3, sample_rate: 100.0, order: 8, cutoff: 5.0, attenuation: 80.0, ramp: 2.0 };
+    assert_eq!(fluid.noise, Some(noise));
     assert_eq!(scene.ship, Some(Ship { derivatives: 0, ned: true }));
     let winch = scene.winch.expect("there");
     assert_eq!((winch.position, winch.axis), (Vector3::new(1.0, -2.0, -3.0), Vector3::new(0.0, -1.0, 0.0)));
@@ -254,6 +256,16 @@ fn exact_problems_name_key_value_and_expectation() {
             "[mesh]",
             "[fluid]\ndensity = 1\nviscosity = 1\nwaterline = 0\ndrag.law = \"loading_functions\"\ndrag.cd = [[2, 1], [1, 1]]\n[mesh]",
             "s.toml: fluid.drag.cd: the first column is [2.0, 1.0]; expected it to ascend strictly",
+        ),
+        (
+            "[mesh]",
+            "[fluid]\ndensity = 1\nwaterline = 0\ndrag.law = \"cross_flow\"\ndrag.cd_normal = 1\ndrag.cd_tangential = 0\ncurrent.noise.std_dev = [0, -1, 0]\n[mesh]",
+            "s.toml: fluid.current.noise.std_dev: found -1; expected three numbers >= 0 in m/s",
+        ),
+        (
+            "[mesh]",
+            "[fluid]\ndensity = 1\nwaterline = 0\ndrag.law = \"cross_flow\"\ndrag.cd_normal = 1\ndrag.cd_tangential = 0\ncurrent.noise = { std_dev = [0, 1, 0], cutoff = 50 }\n[mesh]",
+            "s.toml: fluid.current.noise.cutoff: found 50; expected at least 0.1 and less than 50 Hz, a thousandth and half of fluid.current.noise.sample_rate",
         ),
         (
             "[mesh]",

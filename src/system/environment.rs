@@ -8,6 +8,8 @@ use crate::ship::Frame;
 /// Boundary motion, ship's frame, flow and forces at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Environment {
+    /// The instant, s.
+    pub time: f64,
     /// World motion of the cable's first node.
     pub base: [Jet; 3],
     /// ü of a fixed far end, m/s².

@@ -29,6 +29,7 @@ use crate::contact::surface::{Friction, Groove, Surface};
 use crate::hydro::line::{Flow, LineInWater, LinePoint};
 use crate::hydro::lump::LumpInWater;
 use crate::hydro::surface::line_share;
+use crate::hydro::turbulence::Turbulence;
 use crate::integrator::{Problem, Stage};
 use crate::math::jet::Jet;
 use crate::math::lanes::{Mat3, Vec3, add_identity, add_outer, dot};
@@ -113,6 +114,8 @@ pub struct System {
     pub begin: f64,
     /// Uniform current.
     pub current: [Ramp; 2],
+    /// The current's turbulence.
+    pub turbulence: Option<Turbulence>,
     /// Force on the body.
     pub body_force: [Ramp; 3],
     /// Forces of each element on its slots, of the last evaluation, without contact.
@@ -185,6 +188,7 @@ impl System {
             ship: ShipDrive::default(),
             begin: 0.0,
             current: Default::default(),
+            turbulence: scene.fluid.as_ref().and_then(|f| f.noise.as_ref()).map(Turbulence::new),
             body_force: Default::default(),
             forces: vec![[0.0; 12]; n],
             contact_forces: vec![[0.0; 12]; n],
@@ -264,17 +268,32 @@ impl System {
             }
         }
         Environment {
+            time: t,
             far_end_acceleration: self.far_end.map_or([0.0; 3], |end| end.acceleration(t, &base)),
             base,
             tangent,
             frame,
-            flow: Flow {
-                velocity: [self.current[0].at(tau), self.current[1].at(tau), 0.0],
-                acceleration: if self.frozen { [0.0; 3] } else { [self.current[0].rate, self.current[1].rate, 0.0] },
-            },
+            flow: self.flow(t),
             gravity: [0.0, 0.0, -self.gravity],
             body_force: std::array::from_fn(|c| self.body_force[c].at(tau)),
         }
+    }
+
+    /// The uniform part of the current at `t`; statics know neither turbulence nor rates.
+    fn flow(&self, t: f64) -> Flow {
+        let [x, y] = &self.current;
+        let tau = t - self.begin;
+        let mut flow = Flow { velocity: [x.at(tau), y.at(tau), 0.0], acceleration: [x.rate, y.rate, 0.0] };
+        if self.frozen {
+            flow.acceleration = [0.0; 3];
+        } else if let Some(turbulence) = &self.turbulence {
+            let [v, a] = turbulence.at(t);
+            for c in 0..3 {
+                flow.velocity[c] += v[c];
+                flow.acceleration[c] += a[c];
+            }
+        }
+        flow
     }
 
     /// Evaluates all forces; with `TANGENT` adds to the matrices, which the caller has cleared.
@@ -534,7 +553,7 @@ impl Problem for System {
     fn time_derivative(&mut self, t: f64, scale: f64, u: &[f64], w: &[f64], force: &[f64], f: &mut [f64]) -> bool {
         let winch_moves = matches!(&self.first, FirstEnd::Winch { drive, .. } if drive.is_moving());
         let inputs_move = self.current.iter().chain(&self.body_force).any(|r| r.rate != 0.0);
-        if !(self.ship.is_moving() || winch_moves || inputs_move) {
+        if !(self.ship.is_moving() || winch_moves || inputs_move || self.turbulence.is_some()) {
             return false;
         }
         // Elastic forces do not depend on time and cancel bit by bit, so a small difference loses nothing.

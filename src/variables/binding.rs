@@ -56,6 +56,7 @@ pub(super) fn output(quantity: Output, o: &Outputs, ned: bool) -> Value {
         LoadAngle => real(o.load.angle),
         FarEndForce(c) => component(&o.far_end.force, c),
         FarEndTension => real(o.far_end.tension),
+        CurrentNoise(c) => component(&o.current_noise, c),
         StatusCode => Value::Integer(o.status.code),
         StatusMessage => Value::String(o.status.message.clone()),
         SolverSteps => count(o.solver.steps),

@@ -108,6 +108,8 @@ impl Model {
             version: VERSION,
             tolerance: self.initial_scene.solver.tolerance,
             shape: &self.shape,
+            text: &self.text,
+            picture: None,
             variables: &self.variables,
         }
     }
@@ -135,6 +137,7 @@ fn shape(scene: &Scene) -> Shape {
         anchor: scene.anchor.is_some(),
         sheaves: scene.sheaves.iter().map(|s| SheaveShape { groove: s.groove_angle.is_some(), turns: s.inertia.is_some() }).collect(),
         fluid: scene.fluid.is_some(),
+        noise: scene.fluid.as_ref().is_some_and(|f| f.noise.is_some()),
         body: scene.body.is_some(),
         body_force: scene.body.as_ref().is_some_and(|b| b.force_input),
         load: scene.load.is_some(),

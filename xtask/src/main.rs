@@ -1,12 +1,16 @@
 //! fairlead's commands: one file each.
 
+mod attachments;
 mod binary;
+mod companions;
 mod demo;
 mod demo_report;
+mod dist;
 mod error;
 mod host;
 mod html_report;
 mod library;
+mod licenses;
 mod package;
 mod platform;
 mod plots;
@@ -14,6 +18,7 @@ mod python;
 mod report;
 mod results;
 mod run;
+mod scene_pages;
 mod scenes;
 mod seakeeping;
 mod series;
@@ -37,6 +42,8 @@ struct Cli {
 enum Command {
     /// Pack the default scene, drive it over a ship motion and report under target/demo
     Demo(demo::Args),
+    /// Gather the built-in scenes' FMUs with all that goes with them in target/dist
+    Dist(dist::Args),
     /// Pack a scene as target/fmu/NAME.fmu
     Package(package::Args),
     /// Hold packed FMUs against closed forms, measurements and other programs; writes fmu-tests/report
@@ -65,6 +72,7 @@ fn main() -> ExitCode {
     };
     let outcome = match cli.command {
         Command::Demo(args) => demo::run(args),
+        Command::Dist(args) => dist::run(args),
         Command::Package(args) => package::run(args),
         Command::Report(args) => report::run(args),
         Command::Run(args) => run::run(args),

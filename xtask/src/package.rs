@@ -1,12 +1,16 @@
 //! `cargo xtask package`
 
+use crate::attachments::attachments;
+use crate::binary::Needs;
+use crate::companions;
 use crate::error::{Failure, Result, at};
 use crate::library::Library;
 use crate::platform::{self, GLIBC, Platform};
+use crate::scene_pages;
 use fairlead::scene::best_match;
 use fairlead::variables::Model;
 use model_description::scenes::{SCENES, named};
-use model_description::{html, xml};
+use model_description::{Document, html, xml};
 use std::io::{Seek, Write};
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -21,6 +25,12 @@ pub struct Args {
     /// Where to write the FMU.
     #[arg(long)]
     out: Option<PathBuf>,
+    /// Write NAME_OspModelDescription.xml and an example NAME_OspSystemStructure.xml for libcosim beside the FMU.
+    #[arg(long)]
+    osp: bool,
+    /// Write a parameter set NAME.ssv and an example system NAME.ssp beside the FMU.
+    #[arg(long)]
+    ssp: bool,
     /// Put libraries for these platforms in, each for old systems too: linux64, win64, aarch64-linux, separated by commas. Without
     /// it there is one library, for this machine and others as new.
     #[arg(long, value_delimiter = ',', value_parser = Platform::named)]
@@ -38,6 +48,9 @@ pub fn run(args: Args) -> Result<()> {
             println!("for systems older than this one pack with --platform {}", library.folder);
         }
     }
+    let osp = if args.osp { companions::write_osp(&model, &out)? } else { Vec::new() };
+    let ssp = if args.ssp { companions::write_ssp(&model, &out)? } else { Vec::new() };
+    osp.iter().chain(&ssp).for_each(|file| println!("{}", file.display()));
     println!("{}", out.display());
     Ok(())
 }
@@ -89,6 +102,11 @@ impl Packer {
         Ok(Self { libraries })
     }
 
+    /// What each library asks of its system, with FMI's name of the platform.
+    pub fn needs(&self) -> impl Iterator<Item = (&str, &Needs)> {
+        self.libraries.iter().map(|library| (library.folder.as_str(), &library.needs))
+    }
+
     /// Writes the FMU of a model.
     ///
     /// # Errors
@@ -128,33 +146,37 @@ pub fn target_folder() -> PathBuf {
 }
 
 /// Paths in the archive, with forward slashes, and bytes.
-type Contents = Vec<(String, Vec<u8>)>;
+pub type Contents = Vec<(String, Vec<u8>)>;
 
 fn contents(model: &Model, libraries: &[Library]) -> Result<Contents> {
-    let document = model.document();
+    let picture = picture(model);
+    let document = Document { picture: picture.as_ref().map(|_| PICTURE), ..model.document() };
     let description = xml::model_description(&document).map_err(|e| Failure(format!("modelDescription.xml: {e}")))?;
-    let mut contents = vec![
-        ("modelDescription.xml".to_owned(), description),
-        ("documentation/index.html".to_owned(), html::page(&document).into_bytes()),
-        ("documentation/licenses/license.txt".to_owned(), license()?.into_bytes()),
-    ];
+    let mut contents =
+        vec![("modelDescription.xml".to_owned(), description), ("documentation/index.html".to_owned(), html::page(&document).into_bytes())];
+    contents.extend(picture.map(|svg| (format!("documentation/{PICTURE}"), svg)));
+    contents.extend(attachments(&document)?);
     let path = |library: &Library| platform::library_in(&library.folder, document.name, library.suffix);
     contents.extend(libraries.iter().map(|library| (path(library), library.bytes.clone())));
     contents.extend(model.resources().into_iter().map(|(path, text)| (format!("resources/{path}"), text.into())));
     Ok(contents)
 }
 
-fn license() -> Result<String> {
-    let mut text = String::from("fairlead is licensed under either of the Apache License 2.0 or the MIT license, at your option.\n");
-    for file in ["LICENSE-MIT", "LICENSE-APACHE"] {
-        let path = root().join(file);
-        text += &format!("\n{}\n\n{}", "=".repeat(72), fs::read_to_string(&path).map_err(|e| at(&path, e))?);
-    }
-    Ok(text)
+/// Name of the start shape's picture beside the documentation's page.
+const PICTURE: &str = "start.svg";
+
+/// The picture of a built-in scene's start shape, if it has been drawn (`cargo xtask scenes --pages`).
+fn picture(model: &Model) -> Option<Vec<u8>> {
+    let text = model.resources().first().map(|(_, text)| *text)?;
+    let scene = SCENES.iter().find(|s| s.text == text)?;
+    fs::read(scene_pages::folder().join(format!("{}.svg", scene.name))).ok()
 }
 
-/// Writes beside the goal and renames, so that there is never half an FMU.
-fn write_archive(path: &Path, contents: &Contents) -> Result<()> {
+/// Writes beside the goal and renames, so that there is never half an archive.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn write_archive(path: &Path, contents: &Contents) -> Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     fs::create_dir_all(folder).map_err(|e| at(folder, e))?;
     let mut file = tempfile::Builder::new().prefix(".packing-").tempfile_in(folder).map_err(|e| at(folder, e))?;

@@ -4,14 +4,17 @@
 //! smoothly as the cable is laid on or lifted off, whatever the mesh. The arcs' ends move with the shape; their part of the tangent is exact
 //! too. All of an element's work is done in the surface's axes and turned into world axes once.
 
+mod press;
+
 use super::environment::Environment;
 use super::matrices::{Matrices, element_block};
 use super::{System, gather};
 use crate::cable::shape;
-use crate::contact::arcs::{Arc, Cubic, Touch};
+use crate::contact::arcs::{Arc, Cubic, Samples, Touch};
 use crate::contact::surface::{Face, Surface};
 use crate::math::lanes::{Mat3, Vec3, axpy, dot, mat_vec};
 use crate::math::quadrature::GAUSS5;
+use press::Press;
 
 /// Where the search begins in the first element. Where its node lies on the surface whatever the shape, ξ = 0 is a root of the gap that says
 /// nothing, of a sign that is rounding.
@@ -102,8 +105,9 @@ pub fn near(surface: &Surface, frame: &SurfaceFrame, u: &[Vec3<f64>; 4], l: f64)
 /// Calls `found` with every arc of element `e` in contact with a face (its index first).
 pub fn touching(surface: &Surface, curve: &Cubic, e: usize, mut found: impl FnMut(usize, Face, Arc)) {
     let (faces, count) = surface.faces();
+    let samples = Samples::new(surface, curve, if e == 0 { BEYOND_PIN } else { 0.0 });
     for (i, &face) in faces[..count].iter().enumerate() {
-        Touch { surface, face, curve }.arcs(if e == 0 { BEYOND_PIN } else { 0.0 }, |arc| found(i, face, arc));
+        Touch { surface, face, curve }.arcs(&samples, |arc| found(i, face, arc));
     }
 }
 
@@ -166,7 +170,7 @@ impl System {
                 let mut touched = false;
                 touching(surface, &curve, e, |side, face, arc| {
                     touched = true;
-                    push(surface, side, face, &arc, &curve, velocity, turning.spin, l, &mut forces, total);
+                    Press { surface, side, face, arc, curve: &curve, velocity, spin: turning.spin, length: l }.add(&mut forces, total);
                     if TANGENT {
                         tangent.get_or_insert(Tangent::NONE).arc(surface, face, &arc, &curve, velocity, &turning, &frame.turn, l);
                     }
@@ -205,39 +209,6 @@ impl System {
     }
 }
 
-/// Adds an arc's forces.
-#[inline]
-fn push(
-    surface: &Surface,
-    side: usize,
-    face: Face,
-    arc: &Arc,
-    curve: &Cubic,
-    velocity: Option<&Cubic>,
-    spin: f64,
-    l: f64,
-    forces: &mut Forces,
-    total: &mut SurfaceLoad,
-) {
-    let length = arc.to - arc.from;
-    for (position, weight) in GAUSS5 {
-        let x = arc.from + length * position;
-        let s = curve.at(x);
-        let Some(load) = surface.load::<false>(face, &s, &velocity.map_or([0.0; 3], |v| v.at(x)), spin) else { continue };
-        let shape = shape::value(x, l);
-        let wl = weight * length * l;
-        let f = load.f.map(|f| wl * f);
-        total.faces[side] += wl * load.normal;
-        for c in 0..3 {
-            total.force[c] += f[c];
-            total.moment[c] += s[(c + 1) % 3] * f[(c + 2) % 3] - s[(c + 2) % 3] * f[(c + 1) % 3];
-            for i in 0..4 {
-                forces[i][c] += shape[i] * f[c];
-            }
-        }
-    }
-}
-
 impl Tangent {
     /// Adds an arc.
     fn arc(
@@ -270,22 +241,9 @@ impl Tangent {
                     }
                 }
             }
-            for i in 0..4 {
-                for j in 0..4 {
-                    let both = wl * shape[i] * shape[j];
-                    for r in 0..3 {
-                        for c in 0..3 {
-                            self.stiffness[3 * i + r][3 * j + c] -= both * ds[r][c];
-                        }
-                    }
-                    if damped {
-                        for r in 0..3 {
-                            for c in 0..3 {
-                                self.damping[3 * i + r][3 * j + c] -= both * load.dv[r][c];
-                            }
-                        }
-                    }
-                }
+            subtract_products(&mut self.stiffness, wl, &shape, &ds);
+            if damped {
+                subtract_products(&mut self.damping, wl, &shape, &load.dv);
             }
             // T = s₂ f₁ − s₁ f₂ per length, with its derivatives.
             let moment = s[2] * load.f[1] - s[1] * load.f[2];
@@ -341,6 +299,21 @@ impl Tangent {
                 for i in 0..12 {
                     self.stiffness[i][j] -= by_ends[end][i] * rate;
                 }
+            }
+        }
+    }
+}
+
+/// m −= w sᵢ sⱼ b for every pair of slots.
+#[inline(always)]
+fn subtract_products(m: &mut [[f64; 12]; 12], w: f64, s: &[f64; 4], b: &Mat3<f64>) {
+    // Whole rows at a time.
+    let rows: [[f64; 12]; 3] = std::array::from_fn(|r| std::array::from_fn(|k| s[k / 3] * b[r][k % 3]));
+    for i in 0..4 {
+        let f = w * s[i];
+        for r in 0..3 {
+            for k in 0..12 {
+                m[3 * i + r][k] -= f * rows[r][k];
             }
         }
     }

@@ -1,0 +1,144 @@
+//! A body on 150 m of wire over the stern of a ship in a seaway.
+
+mod bench;
+
+use bench::{channel, run, started};
+use fairlead::outputs::Outputs;
+use fairlead::scene::Scene;
+use fairlead::scene::file::SceneFile;
+use fairlead::sim::Inputs;
+
+const SCENE: &str = include_str!("../../modelDescription/scenes/overboard.toml");
+/// s.
+const END: f64 = 20.0;
+
+/// The scene with `factor` times as many elements.
+fn scene(factor: f64, tolerance: f64) -> Scene {
+    let mut text = SCENE.replace("tolerance = 1e-4 ", &format!("tolerance = {tolerance:e} "));
+    for n in [180, 12, 20] {
+        let old = format!("elements = {n} }}");
+        assert!(text.contains(&old), "{old}");
+        text = text.replace(&old, &format!("elements = {:.0} }}", factor * f64::from(n)));
+    }
+    SceneFile::parse(&text, "overboard.toml").and_then(|f| f.check(None)).expect("a right scene")
+}
+
+/// Amplitude (m or rad), period (s) and phase (rad) of two waves in surge, sway, heave, roll, pitch and yaw: a ship of 80 m in bow
+/// quartering seas of 2.5 m, as `cargo xtask ship-motion --heading 150` gives in its standard deviations.
+const MOTIONS: [[[f64; 3]; 2]; 6] = [
+    [[0.15, 8.6, 0.3], [0.12, 7.1, 2.0]],
+    [[0.09, 8.6, 1.1], [0.07, 7.1, 0.2]],
+    [[0.22, 8.6, 2.2], [0.18, 7.1, 4.0]],
+    [[0.013, 8.6, 0.7], [0.016, 11.3, 1.0]],
+    [[0.017, 8.6, 5.1], [0.013, 7.1, 3.3]],
+    [[0.007, 8.6, 3.9], [0.005, 7.1, 0.5]],
+];
+
+/// The ship, growing out of rest over 5 s.
+fn sea(t: f64) -> Inputs {
+    let ramp = 5.0;
+    let x = (t / ramp).min(1.0);
+    let s = [
+        x.powi(3) * (10.0 - 15.0 * x + 6.0 * x * x),
+        30.0 * (x * (1.0 - x)).powi(2) / ramp,
+        60.0 * x * (1.0 - x) * (1.0 - 2.0 * x) / (ramp * ramp),
+    ];
+    let mut inputs = calm(t);
+    for (input, waves) in inputs.ship.iter_mut().zip(MOTIONS) {
+        let mut m = [0.0; 3];
+        for [amplitude, period, phase] in waves {
+            let w = std::f64::consts::TAU / period;
+            let (sin, cos) = (w * t + phase).sin_cos();
+            for (m, x) in m.iter_mut().zip([sin, w * cos, -w * w * sin]) {
+                *m += amplitude * x;
+            }
+        }
+        *input = channel([s[0] * m[0], s[1] * m[0] + s[0] * m[1], s[2] * m[0] + 2.0 * s[1] * m[1] + s[0] * m[2]]);
+    }
+    inputs
+}
+
+/// No motion, the winch held.
+fn calm(_: f64) -> Inputs {
+    Inputs { ship: [channel([0.0; 3]); 6], winch: channel([0.0; 3]), ..Inputs::default() }
+}
+
+/// What a run comes to.
+#[derive(Debug)]
+struct Voyage {
+    /// Extremes of the tension at the winch and of the force on the sheave, N.
+    tension: [f64; 2],
+    force: [f64; 2],
+    end: Outputs,
+}
+
+fn voyage(scene: &Scene, h: f64) -> Voyage {
+    let mut sim = started(scene, &sea(0.0));
+    let (mut tension, mut force) = ([f64::INFINITY, 0.0f64], [f64::INFINITY, 0.0f64]);
+    run(&mut sim, h, END, sea, |t, o| {
+        assert!(o.sheaves[0].in_contact && !o.sheaves[0].out_of_groove && !o.cable.slack, "t = {t} s");
+        for (range, x) in [(&mut tension, o.winch.tension), (&mut force, o.sheaves[0].normal_force)] {
+            *range = [range[0].min(x), range[1].max(x)];
+        }
+    });
+    let end = sim.outputs().clone();
+    let solver = &end.solver;
+    println!(
+        "{} elements, tolerance {:e}, steps of {:.0} ms: winch.tension {:.1} to {:.1} N, sheave[1].normal_force {:.1} to {:.1} N; \
+         {} sub-steps, {} rejected, energy error {:.1e}",
+        scene.elements.len(),
+        scene.solver.tolerance,
+        1e3 * h,
+        tension[0],
+        tension[1],
+        force[0],
+        force[1],
+        solver.steps,
+        solver.rejected,
+        solver.energy_error
+    );
+    Voyage { tension, force, end }
+}
+
+#[test]
+fn exact_start_is_at_rest_and_the_sheave_carries_what_statics_says() {
+    let mut sim = started(&scene(1.0, 1e-4), &calm(0.0));
+    let first = sim.outputs().clone();
+    run(&mut sim, 0.05, 5.0, calm, |_, _| {});
+    let last = sim.outputs();
+    // The equilibrium is found to 1e-10 of the weight; what moves afterwards is rounding.
+    assert!((last.body.position - first.body.position).norm() < 1e-6, "{:?} {:?}", first.body.position, last.body.position);
+    assert!((last.winch.tension / first.winch.tension - 1.0).abs() < 1e-6);
+    // 2 T sin(turn/2). The turn is taken three bending lengths √(EI/T) beyond the arc, where e⁻³ of the wire's last bend is still to come, and the
+    // weight of half a metre of wire is on the sheave too: together some tenths of a percent.
+    let s = &first.sheaves[0];
+    let expected = 2.0 * 0.5 * (s.tension_in + s.tension_out) * (0.5 * s.turn_angle).sin();
+    println!(
+        "at rest: winch.tension {:.1} N, sheave[1].normal_force {:.1} N ({expected:.1} N by statics)",
+        first.winch.tension, s.normal_force
+    );
+    assert!((s.normal_force / expected - 1.0).abs() < 5e-3, "{} {expected}", s.normal_force);
+}
+
+#[test]
+fn exact_seaway_runs_stably_and_its_extremes_converge() {
+    let shipped = voyage(&scene(1.0, 1e-4), 0.02);
+    let others = [
+        ("steps of 50 ms", voyage(&scene(1.0, 1e-4), 0.05)),
+        ("steps of 10 ms", voyage(&scene(1.0, 1e-4), 0.01)),
+        ("a tenth of the tolerance", voyage(&scene(1.0, 1e-5), 0.02)),
+        ("half as many elements again", voyage(&scene(1.5, 1e-4), 0.02)),
+    ];
+    for (what, other) in &others {
+        for (a, b) in shipped.tension.iter().chain(&shipped.force).zip(other.tension.iter().chain(&other.force)) {
+            // Extremes at communication points: steps of 50 ms may miss a peak of 0.5 s by 0.1 %.
+            assert!((a / b - 1.0).abs() < 3e-3, "{what}: {shipped:?} {other:?}");
+        }
+    }
+    for v in others.iter().map(|(_, v)| v).chain([&shipped]) {
+        let solver = &v.end.solver;
+        // No storms: a few rejections when the contact's edge passes a node.
+        assert!(20 * solver.rejected < solver.steps, "{} of {}", solver.rejected, solver.steps);
+        assert!(solver.energy_error < 1e-2, "{}", solver.energy_error);
+    }
+}
