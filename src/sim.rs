@@ -114,10 +114,12 @@ impl Simulation {
         let mut system = System::new(scene);
         let (n, nodes) = (system.size(), system.nodes());
         let zeros = || vec![0.0; n];
+        let places: Vec<usize> = system.turning.iter().map(|s| s.at).collect();
         let mut matrices = Matrices::zeros(nodes);
         let mut constant_mass = None;
         if !system.mass_varies() {
-            let straight: Vec<f64> = system.arc.iter().flat_map(|s| [*s, 0.0, 0.0, 1.0, 0.0, 0.0]).collect();
+            let mut straight: Vec<f64> = system.arc.iter().flat_map(|s| [*s, 0.0, 0.0, 1.0, 0.0, 0.0]).collect();
+            straight.resize(n, 0.0);
             system.linearize(0.0, &straight, &zeros(), &zeros(), &mut matrices, &mut zeros());
             let mut mass = matrices.mass.clone();
             mass.factor().map_err(|e| SimError::Start(format!("the mass matrix is singular at node {}", e.row)))?;
@@ -126,7 +128,7 @@ impl Simulation {
         let state = State { u: zeros(), w: zeros(), a: zeros(), n: vec![0.0; 3 * scene.elements.len()], ..State::default() };
         Ok(Self {
             scene: scene.clone(),
-            method: Rodas4::new(n),
+            method: Rodas4::new(n, &places),
             backup: state.clone(),
             state,
             work: Work { matrices, force: zeros(), mid: [zeros(), zeros(), zeros()], constant_mass, outputs: Vec::new() },
@@ -417,7 +419,7 @@ impl Simulation {
                 mid_u[i] = 0.5 * (s.u[i] + u[i]) + h / 8.0 * (s.w[i] - w[i]);
                 mid_w[i] = 1.5 / h * (u[i] - s.u[i]) - 0.25 * (s.w[i] + w[i]);
             }
-            self.system.accept(u, w, &Rodas4::WEIGHTS);
+            self.system.accept(u, w, Rodas4::WEIGHTS);
             s.u.copy_from_slice(u);
             s.w.copy_from_slice(w);
             if self.system.mass_varies() {

@@ -31,6 +31,9 @@ pub trait Problem {
     fn error_size(&self, e: &[f64], mass_e: &[f64]) -> f64;
 }
 
+/// The most stages that a method may have.
+pub const MOST_STAGES: usize = 6;
+
 /// A stage of a Rosenbrock method: its value is y_0 + Σ a_ij U_j.
 #[derive(Clone, Copy, Debug)]
 pub struct Stage<'a> {

@@ -10,26 +10,29 @@
 //! Where M depends on u, the accelerations a join as algebraic unknowns of 0 = F − M(u) a; eliminating them leaves the same matrix and the
 //! extra terms −(M(u_i) − M) a_i, with increments A_i = W_i/g − a_i − Σ c_ij W_j / h.
 
-use super::{Problem, Stage, Trial};
+use super::{MOST_STAGES, Problem, Stage, Trial};
 use crate::linalg::{Bordered, Columns};
 use crate::math::lanes::{Kernel, widest};
 use crate::system::Matrices;
 
 const STAGES: usize = 6;
+const _: () = assert!(STAGES <= MOST_STAGES);
 const GAMMA: f64 = 0.25;
 /// Stage times.
 const ALPHA: [f64; STAGES] = [0.0, 0.386, 0.21, 0.63, 1.0, 1.0];
 /// Factors of ∂F/∂t.
 const GAMMA_I: [f64; STAGES] = [0.25, -0.1043, 0.1035, -0.036_200_000_000_000_23, 0.0, 0.0];
 /// Stage values: y + Σ a_ij U_j.
-const A: [&[f64]; STAGES] = [
+static A: [&[f64]; STAGES] = [
     &[],
     &[1.544],
     &[0.946_678_528_081_582_6, 0.255_701_169_898_328_4],
     &[3.314_825_187_068_521, 2.896_124_015_972_201, 0.998_641_913_997_781_7],
-    &[1.221_224_509_226_641, 6.019_134_481_288_629, 12.537_083_329_320_87, -0.687_886_036_105_895],
-    &[1.221_224_509_226_641, 6.019_134_481_288_629, 12.537_083_329_320_87, -0.687_886_036_105_895, 1.0],
+    WEIGHTS.split_at(4).0,
+    WEIGHTS.split_at(5).0,
 ];
+/// The solution: y + Σ m_j U_j. The last two stages are its beginning.
+static WEIGHTS: [f64; STAGES] = [1.221_224_509_226_641, 6.019_134_481_288_629, 12.537_083_329_320_87, -0.687_886_036_105_895, 1.0, 1.0];
 /// Σ c_ij U_j / h.
 const C: [&[f64]; STAGES] = [
     &[],
@@ -62,16 +65,15 @@ impl Rodas4 {
     /// Order of the solution.
     pub const ORDER: usize = 4;
     /// Of the increments in the solution.
-    pub const WEIGHTS: [f64; STAGES] =
-        [1.221_224_509_226_641, 6.019_134_481_288_629, 12.537_083_329_320_87, -0.687_886_036_105_895, 1.0, 1.0];
+    pub const WEIGHTS: &[f64] = &WEIGHTS;
     /// Order of the error estimate plus one: error ~ h^this.
     pub const ESTIMATE_ORDER: usize = 4;
 
-    /// For `size` unknowns.
-    pub fn new(size: usize) -> Self {
+    /// For `size` unknowns, of which those `at` are coupled beyond the band.
+    pub fn new(size: usize, at: &[usize]) -> Self {
         let zeros = || vec![vec![0.0; size]; STAGES];
         Self {
-            factors: Bordered::zeros(size / 6),
+            factors: Bordered::zeros(size / 6, at),
             stiffness: Columns::zeros(size / 6),
             mass: Columns::zeros(size / 6),
             p: zeros(),
@@ -91,7 +93,7 @@ impl Rodas4 {
         let (u0, w0, a0) = (from[0], from[1], from[2]);
         self.factors.core.combine(&m.mass, &m.damping, &m.stiffness, g);
         for (k, coupling) in m.couplings.iter().enumerate() {
-            let (column, row) = self.factors.border(k, coupling.at);
+            let (column, row) = self.factors.border(k);
             blend(column, None, g, &[1.0], std::slice::from_ref(&coupling.damping_column));
             blend(row, Some(&coupling.damping_row), 1.0, &[g], std::slice::from_ref(&coupling.stiffness_row));
             row.iter_mut().for_each(|x| *x *= g);
@@ -298,7 +300,7 @@ mod tests {
 
     fn error(varying: bool, steps: usize) -> f64 {
         let mut problem = Oscillator { varying };
-        let mut method = Rodas4::new(6);
+        let mut method = Rodas4::new(6, &[]);
         let mut m = Matrices::zeros(1);
         let mut f = vec![0.0; 6];
         let [x, v, a] = Oscillator::exact(0.0);

@@ -20,22 +20,21 @@ pub struct Bordered {
 }
 
 impl Bordered {
-    /// All zero, `n` block rows, no borders.
-    pub fn zeros(n: usize) -> Self {
-        Self { core: BlockTridiagonal::zeros(n), ..Self::default() }
+    /// All zero, `n` block rows, a border for each of the unknowns `at`.
+    pub fn zeros(n: usize, at: &[usize]) -> Self {
+        let full = || vec![vec![0.0; BLOCK * n]; at.len()];
+        Self {
+            core: BlockTridiagonal::zeros(n),
+            at: at.to_vec(),
+            columns: full(),
+            rows: full(),
+            inverse: vec![0.0; at.len() * at.len()],
+            scratch: vec![0.0; at.len()],
+        }
     }
 
-    /// The `k`-th border's column and row, to be filled before `factor`; further ones are made as needed.
-    pub fn border(&mut self, k: usize, at: usize) -> (&mut [f64], &mut [f64]) {
-        let n = BLOCK * self.core.len();
-        while self.at.len() <= k {
-            self.at.push(at);
-            self.columns.push(vec![0.0; n]);
-            self.rows.push(vec![0.0; n]);
-            self.inverse = vec![0.0; self.at.len() * self.at.len()];
-            self.scratch = vec![0.0; self.at.len()];
-        }
-        self.at[k] = at;
+    /// The `k`-th border's column and row, to be filled before `factor`.
+    pub fn border(&mut self, k: usize) -> (&mut [f64], &mut [f64]) {
         (&mut self.columns[k], &mut self.rows[k])
     }
 
@@ -118,7 +117,7 @@ mod tests {
         let (n, at) = (5, [24, 25, 26]);
         let value = |r: usize, c: usize| ((7 * r + 13 * c) as f64 * 0.7).sin() + if r == c { 9.0 } else { 0.0 };
         let is_border = |i: usize| at.contains(&i);
-        let mut a = Bordered::zeros(n);
+        let mut a = Bordered::zeros(n, &at);
         let mut dense = faer::Mat::<f64>::zeros(6 * n, 6 * n);
         for r in 0..6 * n {
             for c in 0..6 * n {
@@ -128,10 +127,10 @@ mod tests {
                     a.core.add(r / 6, c / 6, r % 6, c % 6, value(r, c));
                     put(value(r, c));
                 } else if is_border(r) && c < 24 {
-                    a.border(r - 24, r).1[c] = value(r, c);
+                    a.border(r - 24).1[c] = value(r, c);
                     put(value(r, c));
                 } else if is_border(c) && r < 24 {
-                    a.border(c - 24, c).0[r] = value(r, c);
+                    a.border(c - 24).0[r] = value(r, c);
                     put(value(r, c));
                 }
             }

@@ -292,6 +292,21 @@ fn exact_problems_name_key_value_and_expectation() {
             "[[sheave]]\nname = \"a\"\nposition = [0, 0, 0]\naxis = [0, 1, 0]\nradius = 1\nstiffness = 1\n[[sheave]]\nname = \"b\"\nposition = [0.5, 0, 0]\naxis = [0, -2, 0]\nradius = 0.2\nstiffness = 1\n[mesh]",
             "s.toml: sheave[2].position: \"b\" (radius 0.2 m) and \"a\" (radius 1 m) lie inside each other: their axes are 0.5000 m apart; expected at least 1.2000 m",
         ),
+        (
+            "[mesh]",
+            "[[sheave]]\nposition = [0, 0, 0]\naxis = [0, 1, 0]\nradius = 1\nstiffness = 1\ninertia = 0.1\n[mesh]",
+            "s.toml: sheave[1].inertia: given without friction; expected sheave.friction above 0, since nothing else lets the cable turn the sheave",
+        ),
+        (
+            "[mesh]",
+            "[[sheave]]\nposition = [0, 0, 0]\naxis = [0, 1, 0]\nradius = 1\nstiffness = 1\nfriction = 0.1\ninertia = 0.1\nbearing_friction = -1\n[mesh]",
+            "s.toml: sheave[1].bearing_friction: found -1.0; expected a number >= 0 in N.m",
+        ),
+        (
+            "[mesh]",
+            "[[sheave]]\nposition = [0, 0, 0]\naxis = [0, 1, 0]\nradius = 1\nstiffness = 1\nbearing_damping = 1\n[mesh]",
+            "s.toml: sheave[1].bearing_damping: only allowed together with sheave[1].inertia",
+        ),
         ("[mesh]", "[ship]\ninput = \"pose\"\n[mesh]\nelemnts = 2", "s.toml: mesh.elemnts: unknown key; did you mean mesh.elements?"),
     ];
     for (old, new, expected) in cases {

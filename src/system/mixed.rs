@@ -23,10 +23,8 @@
 //! it nearer to Σ again.
 
 use crate::cable::section::{Resistance, Strains};
+use crate::integrator::MOST_STAGES;
 use crate::math::lanes::{Lanes, Vec3, axpy, dot, lane, set_lane};
-
-/// Most stages that a method may have.
-const STAGES: usize = 6;
 
 /// N of one Gauss point of `W` elements side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +40,7 @@ pub struct AxialUnknown<const W: usize> {
     /// N_0 − Σ'·y_0, N.
     offset: Lanes<W>,
     /// Σ_j − N_j, N.
-    gaps: [Lanes<W>; STAGES],
+    gaps: [Lanes<W>; MOST_STAGES],
     /// Σ_{j<i} a_ij (Σ_j − N_j) of the stage at hand, N.
     drift: Lanes<W>,
 }
@@ -56,7 +54,7 @@ impl<const W: usize> AxialUnknown<W> {
         damping: Lanes::ZERO,
         ea: Lanes::ZERO,
         offset: Lanes::ZERO,
-        gaps: [Lanes::ZERO; STAGES],
+        gaps: [Lanes::ZERO; MOST_STAGES],
         drift: Lanes::ZERO,
     };
 
