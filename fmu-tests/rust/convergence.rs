@@ -176,14 +176,21 @@ fn exact_ten_short_communication_steps_do_what_a_long_one_does() {
     }
 }
 
+/// A cord over a sheave that turns, in a turbulent current.
+fn turning() -> Scene {
+    CORD.scene(
+        ELEMENTS,
+        "[anchor]\nposition = [-0.3, 0, 0.1]\n[[sheave]]\nposition = [0, 0, 0]\naxis = [0, 1, 0]\nradius = 0.1\nstiffness = 1e7\n\
+         groove_angle = 0.8\nfriction = 0.3\ninertia = 1e-3\nbearing_friction = 0.01\n[ship]\ninput = \"pose\"\n\
+         [fluid]\ndensity = 1000\nwaterline = -0.2\ndrag = { law = \"cross_flow\", cd_normal = 1.2, cd_tangential = 0.02 }\n\
+         current.noise.std_dev = [0.1, 0.1, 0.1]\n\
+         [body]\nmass = 2\nvolume = 1e-4\ndrag_area = 0.01\ndrag_coefficient = 1\n",
+    )
+}
+
 #[test]
 fn exact_rollback_is_bit_for_bit() {
-    // And a sheave that turns in a turbulent current.
-    let turning = "[anchor]\nposition = [-0.3, 0, 0.1]\n[[sheave]]\nposition = [0, 0, 0]\naxis = [0, 1, 0]\nradius = 0.1\nstiffness = 1e7\n\
-                   groove_angle = 0.8\nfriction = 0.3\ninertia = 1e-3\nbearing_friction = 0.01\n[ship]\ninput = \"pose\"\n\
-                   [fluid]\ndensity = 1000\nwaterline = -0.2\ndrag = { law = \"cross_flow\", cd_normal = 1.2, cd_tangential = 0.02 }\n\
-                   current.noise.std_dev = [0.1, 0.1, 0.1]\n[body]\nmass = 2\nvolume = 1e-4\n";
-    for scene in [reeled("tangent", 1e-3, false), reeled("pinned", 1e-3, true), CORD.scene(ELEMENTS, turning)] {
+    for scene in [reeled("tangent", 1e-3, false), reeled("pinned", 1e-3, true), turning()] {
         let mut sim = started(&scene, &at_sea(0.0));
         run(&mut sim, 0.02, 0.3, at_sea, |_, _| {});
         let saved = bits(&sim);
@@ -220,8 +227,7 @@ fn exact_rollback_is_bit_for_bit() {
 
 #[test]
 fn exact_steps_allocate_nothing() {
-    for (water, end) in [(false, "tangent"), (true, "pinned")] {
-        let scene = reeled(end, 1e-3, water);
+    for scene in [reeled("tangent", 1e-3, false), reeled("pinned", 1e-3, true), turning()] {
         let mut sim = started(&scene, &at_sea(0.0));
         run(&mut sim, 0.02, 0.2, at_sea, |_, _| {});
         let before = ALLOCATIONS.get();

@@ -164,51 +164,61 @@ impl Surface {
         }
     }
 
-    /// Loads without friction on points side by side at `s` that move with `v`, as in [`Surface::load`]: forces and their sizes, N/m.
+    /// Forces on points side by side at `s` that move with `v` relative to the ship while the surface turns at `spin` (rad/s), and their parts
+    /// normal to the face, N/m; zero without contact.
     #[inline(always)]
-    pub fn normal_loads<const N: usize>(
-        &self,
-        face: Face,
-        s: &[[f64; N]; 3],
-        v: &[[f64; N]; 3],
-        f: &mut [[f64; N]; 3],
-        normal: &mut [f64; N],
-    ) {
-        let mut depth = [0.0; N];
-        let (mut n, mut gain) = ([[0.0; N]; 3], [0.0; N]);
+    pub fn forces<const N: usize>(&self, face: Face, s: &[[f64; N]; 3], v: &[[f64; N]; 3], spin: f64) -> ([[f64; N]; 3], [f64; N]) {
+        let (mut rho, mut depth, mut gain) = ([0.0; N], [0.0; N], [0.0; N]);
+        // Radial unit vector and normal.
+        let (mut e, mut n) = ([[0.0; N]; 2], [[face.axial; N]; 3]);
+        let mut rate = [0.0; N];
         for i in 0..N {
-            let rho = (s[1][i] * s[1][i] + s[2][i] * s[2][i]).sqrt();
-            let h = rho - self.radius;
-            depth[i] = (-(face.axial * s[0][i] + face.radial * h)).max(0.0);
-            n[0][i] = face.axial;
-            n[1][i] = face.radial * s[1][i] / rho;
-            n[2][i] = face.radial * s[2][i] / rho;
-            let rate = n[0][i] * v[0][i] + n[1][i] * v[1][i] + n[2][i] * v[2][i];
-            gain[i] = (1.0 - self.law.damping * rate).max(0.0);
+            rho[i] = (s[1][i] * s[1][i] + s[2][i] * s[2][i]).sqrt();
+            depth[i] = (-(face.axial * s[0][i] + face.radial * (rho[i] - self.radius))).max(0.0);
+            for c in 0..2 {
+                e[c][i] = s[c + 1][i] / rho[i];
+                n[c + 1][i] = face.radial * e[c][i];
+            }
+            rate[i] = n[0][i] * v[0][i] + n[1][i] * v[1][i] + n[2][i] * v[2][i];
+            gain[i] = (1.0 - self.law.damping * rate[i]).max(0.0);
         }
-        let powers = hunt_crossley::powers(self.law.exponent, &depth);
+        let mut normal = hunt_crossley::powers(self.law.exponent, &depth);
         for i in 0..N {
-            normal[i] = self.law.stiffness * powers[i] * gain[i];
+            normal[i] *= self.law.stiffness * gain[i];
         }
         if let Some(g) = &self.groove
             && g.depth.is_finite()
         {
             for i in 0..N {
-                let rho = (s[1][i] * s[1][i] + s[2][i] * s[2][i]).sqrt();
-                normal[i] *= g.extent(rho - self.radius, s[0][i].abs()).0;
+                normal[i] *= g.extent(rho[i] - self.radius, s[0][i].abs()).0;
             }
         }
+        for i in 0..N {
+            // On the axis itself there is no direction, and no load.
+            normal[i] = if rho[i] > 0.0 { normal[i] } else { 0.0 };
+        }
+        let mut f = [[0.0; N]; 3];
         for c in 0..3 {
             for i in 0..N {
-                // On the axis itself there is no direction, and no load.
                 f[c][i] = if normal[i] > 0.0 { normal[i] * n[c][i] } else { 0.0 };
             }
         }
+        if let Some(Friction { coefficient, slip_speed }) = self.friction {
+            for i in 0..N {
+                let t = [0.0, -e[1][i], e[0][i]];
+                let slip: Vec3<f64> = std::array::from_fn(|c| v[c][i] - rate[i] * n[c][i] - spin * rho[i] * t[c]);
+                let speed = (dot(&slip, &slip) + slip_speed * slip_speed).sqrt();
+                for c in 0..3 {
+                    f[c][i] -= if normal[i] > 0.0 { coefficient * normal[i] / speed * slip[c] } else { 0.0 };
+                }
+            }
+        }
+        (f, normal)
     }
 
-    /// Load on a point at `s` that moves with `v` relative to the ship while the surface turns at `spin` (rad/s); `None` without contact.
+    /// The force on one point with its derivatives, as in [`Surface::forces`]; `None` without contact.
     #[inline(always)]
-    pub fn load<const TANGENT: bool>(&self, face: Face, s: &Vec3<f64>, v: &Vec3<f64>, spin: f64) -> Option<PointLoad> {
+    pub fn load(&self, face: Face, s: &Vec3<f64>, v: &Vec3<f64>, spin: f64) -> Option<PointLoad> {
         let rho = (s[1] * s[1] + s[2] * s[2]).sqrt();
         let h = rho - self.radius;
         let depth = -(face.axial * s[0] + face.radial * h);
@@ -230,40 +240,35 @@ impl Surface {
         let vt = dot(&t, v);
         // ∂n/∂s = (n_r/ρ) t tᵀ, so ∂δ̇/∂s = −(n_r/ρ) v_t t.
         let hoop = face.radial / rho;
-        let mut grad = [0.0; 3];
-        if TANGENT {
-            grad = axpy(&scale(-weight * by_depth, &n), -weight * by_rate * hoop * vt, &t);
-            grad = axpy(&grad, force * by_h, &e);
-            grad[0] += force * by_y;
-            add_outer(&mut load.ds, 1.0, &n, &grad);
-            add_outer(&mut load.ds, normal * hoop, &t, &t);
-            add_outer(&mut load.dv, -weight * by_rate, &n, &n);
-        }
+        let mut grad = axpy(&scale(-weight * by_depth, &n), -weight * by_rate * hoop * vt, &t);
+        grad = axpy(&grad, force * by_h, &e);
+        grad[0] += force * by_y;
+        add_outer(&mut load.ds, 1.0, &n, &grad);
+        add_outer(&mut load.ds, normal * hoop, &t, &t);
+        add_outer(&mut load.dv, -weight * by_rate, &n, &n);
         if let Some(Friction { coefficient, slip_speed }) = self.friction {
             let slip = axpy(&axpy(v, -vn, &n), -spin * rho, &t);
             let speed = (dot(&slip, &slip) + slip_speed * slip_speed).sqrt();
             let d = scale(1.0 / speed, &slip);
             load.f = axpy(&load.f, -coefficient * normal, &d);
-            if TANGENT {
-                add_outer(&mut load.ds, -coefficient, &d, &grad);
-                add_outer(&mut load.dv, coefficient * weight * by_rate, &d, &n);
-                // ∂(slip)/∂s and ∂(slip)/∂v, then through d = slip/√(slip² + v_ε²).
-                let (mut by_s, mut by_v) = (zero_mat(), zero_mat());
-                add_outer(&mut by_s, -hoop * vn, &t, &t);
-                add_outer(&mut by_s, -hoop * vt, &n, &t);
-                add_outer(&mut by_s, -spin, &t, &e);
-                add_outer(&mut by_s, spin, &e, &t);
-                add_identity(&mut by_v, 1.0);
-                add_outer(&mut by_v, -1.0, &n, &n);
-                let mu = -coefficient * normal / speed;
-                let by_spin = scale(-rho, &t);
-                load.dspin = scale(mu, &axpy(&by_spin, -dot(&d, &by_spin), &d));
-                for (m, by) in [(&mut load.ds, &by_s), (&mut load.dv, &by_v)] {
-                    let along: Vec3<f64> = std::array::from_fn(|c| (0..3).map(|r| d[r] * by[r][c]).sum());
-                    for r in 0..3 {
-                        for c in 0..3 {
-                            m[r][c] += mu * (by[r][c] - d[r] * along[c]);
-                        }
+            add_outer(&mut load.ds, -coefficient, &d, &grad);
+            add_outer(&mut load.dv, coefficient * weight * by_rate, &d, &n);
+            // ∂(slip)/∂s and ∂(slip)/∂v, then through d = slip/√(slip² + v_ε²).
+            let (mut by_s, mut by_v) = (zero_mat(), zero_mat());
+            add_outer(&mut by_s, -hoop * vn, &t, &t);
+            add_outer(&mut by_s, -hoop * vt, &n, &t);
+            add_outer(&mut by_s, -spin, &t, &e);
+            add_outer(&mut by_s, spin, &e, &t);
+            add_identity(&mut by_v, 1.0);
+            add_outer(&mut by_v, -1.0, &n, &n);
+            let mu = -coefficient * normal / speed;
+            let by_spin = scale(-rho, &t);
+            load.dspin = scale(mu, &axpy(&by_spin, -dot(&d, &by_spin), &d));
+            for (m, by) in [(&mut load.ds, &by_s), (&mut load.dv, &by_v)] {
+                let along: Vec3<f64> = std::array::from_fn(|c| (0..3).map(|r| d[r] * by[r][c]).sum());
+                for r in 0..3 {
+                    for c in 0..3 {
+                        m[r][c] += mu * (by[r][c] - d[r] * along[c]);
                     }
                 }
             }
@@ -299,7 +304,7 @@ mod tests {
             let (faces, n) = surface.faces();
             for face in &faces[..n] {
                 for x in places {
-                    let f = |x: &[f64; 6]| surface.load::<true>(*face, &[x[0], x[1], x[2]], &[x[3], x[4], x[5]], 0.7);
+                    let f = |x: &[f64; 6]| surface.load(*face, &[x[0], x[1], x[2]], &[x[3], x[4], x[5]], 0.7);
                     let Some(l) = f(&x) else { continue };
                     touched += 1;
                     for j in 0..6 {
@@ -314,7 +319,7 @@ mod tests {
                             assert!((d - exact).abs() < 1e-6 * 1e5, "{surface:?} {face:?} ({i}, {j}): {d} against {exact}"); // 1e-6 of k
                         }
                     }
-                    let at = |spin: f64| surface.load::<false>(*face, &[x[0], x[1], x[2]], &[x[3], x[4], x[5]], spin).unwrap().f;
+                    let at = |spin: f64| surface.load(*face, &[x[0], x[1], x[2]], &[x[3], x[4], x[5]], spin).unwrap().f;
                     let (up, down) = (at(0.7 + 1e-7), at(0.7 - 1e-7));
                     for i in 0..3 {
                         assert!(((up[i] - down[i]) / 2e-7 - l.dspin[i]).abs() < 1e-6 * 1e5, "{surface:?} {face:?} spin {i}");
@@ -329,15 +334,14 @@ mod tests {
     fn exact_points_side_by_side_feel_what_one_feels() {
         let places = [[0.03, -0.31, 0.38], [0.06, -0.43, 0.413], [0.11, 0.33, 0.4], [0.0, 0.6, 0.0]];
         let (s, v) = ([0, 1, 2].map(|c| places.map(|p| p[c])), [[0.4, -0.4, 9.0, 0.1]; 3]);
-        for surface in surfaces().into_iter().filter(|s| s.friction.is_none()) {
+        for surface in surfaces() {
             for exponent in [1.0, 1.5, 2.2] {
                 let surface = Surface { law: Contact { exponent, ..surface.law }, ..surface.clone() };
                 let (faces, n) = surface.faces();
                 for face in &faces[..n] {
-                    let (mut f, mut normal) = ([[0.0; 4]; 3], [0.0; 4]);
-                    surface.normal_loads(*face, &s, &v, &mut f, &mut normal);
+                    let (f, normal) = surface.forces(*face, &s, &v, 0.7);
                     for (i, place) in places.iter().enumerate() {
-                        let one = surface.load::<false>(*face, place, &[v[0][i], v[1][i], v[2][i]], 0.0);
+                        let one = surface.load(*face, place, &[v[0][i], v[1][i], v[2][i]], 0.7);
                         let (of, on) = one.map_or(([0.0; 3], 0.0), |l| (l.f, l.normal));
                         // Rounding of forces up to 1e5 N/m.
                         assert!((normal[i] - on).abs() < 1e-9 && (0..3).all(|c| (f[c][i] - of[c]).abs() < 1e-9), "{face:?} {place:?}");
@@ -351,7 +355,7 @@ mod tests {
     fn exact_forces_end_at_the_rim_and_beside_it() {
         let grooved = &surfaces()[3];
         let (faces, _) = grooved.faces();
-        let at = |y: f64, h: f64| faces.map(|f| grooved.load::<false>(f, &[y, 0.5 + h, 0.0], &[0.0; 3], 0.0).map_or(0.0, |l| l.normal));
+        let at = |y: f64, h: f64| faces.map(|f| grooved.load(f, &[y, 0.5 + h, 0.0], &[0.0; 3], 0.0).map_or(0.0, |l| l.normal));
         assert_eq!(at(0.0, 0.01), [0.0, 0.0]); // in the open between the flanks
         assert!(at(-0.03, 0.05)[0] > 0.0 && at(-0.03, 0.05)[1] == 0.0); // on the first flank
         assert_eq!(at(-0.06, 0.1001), [0.0, 0.0]); // over the rim

@@ -2,8 +2,8 @@
 
 use super::SheaveOutputs;
 use super::observe::{span_tension, span_tension_beside, tangent_at};
-use crate::contact::surface::Surface;
-use crate::math::lanes::{Vec3, dot, mat_vec};
+use crate::contact::surface::{Face, Surface};
+use crate::math::lanes::{Vec3, axpy, dot, mat_vec};
 use crate::system::contact::{SurfaceFrame, near, touching};
 use crate::system::{Environment, System, gather};
 use nalgebra::Vector3;
@@ -18,6 +18,12 @@ const RUN_IN: f64 = 0.25;
 /// Turns a vector from a surface's axes into ship axes.
 pub fn to_ship(surface: &Surface, v: &Vec3<f64>) -> Vector3<f64> {
     Vector3::from_fn(|c, _| (0..3).map(|k| surface.basis[k][c] * v[k]).sum())
+}
+
+/// The force per length on a point at rest, and its normal part, N/m.
+fn still(surface: &Surface, face: Face, s: &Vec3<f64>) -> (Vec3<f64>, f64) {
+    let (f, [normal]) = surface.forces(face, &s.map(|x| [x]), &[[0.0]; 3], 0.0);
+    (f.map(|[x]| x), normal)
 }
 
 /// First and last arc length in contact with surface `index`, m.
@@ -35,7 +41,7 @@ pub fn contact_arc(system: &System, env: &Environment, u: &[f64], index: usize) 
             // A face may be "touched" beyond the groove's extent, where it bears nothing.
             let bears = (0..=SAMPLES).any(|k| {
                 let x = a.from + (a.to - a.from) * (k as f64 + 0.5) / (SAMPLES + 1) as f64;
-                surface.load::<false>(face, &curve.at(x), &[0.0; 3], 0.0).is_some()
+                still(surface, face, &curve.at(x)).1 > 0.0
             });
             if bears {
                 let (from, to) = (system.arc[e] + a.from * l, system.arc[e] + a.to * l);
@@ -139,9 +145,7 @@ pub fn sheave(
         let p = place(s);
         let mut f = [0.0; 3];
         for face in &faces[..count] {
-            if let Some(l) = surface.load::<false>(*face, &p, &[0.0; 3], 0.0) {
-                (0..3).for_each(|c| f[c] += l.f[c]);
-            }
+            f = axpy(&f, 1.0, &still(surface, *face, &p).0);
         }
         let size = dot(&f, &f).sqrt();
         most = most.max(size);

@@ -230,7 +230,7 @@ impl Tangent {
         for (position, weight) in GAUSS5 {
             let x = arc.from + length * position;
             let s = curve.at(x);
-            let Some(load) = surface.load::<true>(face, &s, &velocity.map_or([0.0; 3], |v| v.at(x)), turning.spin) else { continue };
+            let Some(load) = surface.load(face, &s, &velocity.map_or([0.0; 3], |v| v.at(x)), turning.spin) else { continue };
             let shape = shape::value(x, l);
             let wl = weight * length * l;
             let mut ds = load.ds;

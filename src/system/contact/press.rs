@@ -1,10 +1,10 @@
-//! Forces of an arc in contact: its Gauss points side by side where there is no friction, else one by one.
+//! Forces of an arc in contact, its Gauss points side by side.
 
 use super::{Forces, SurfaceLoad};
 use crate::cable::shape;
 use crate::contact::arcs::{Arc, Cubic};
 use crate::contact::surface::{Face, Surface};
-use crate::math::lanes::{Kernel, Vec3, widest};
+use crate::math::lanes::{Kernel, widest};
 use crate::math::quadrature::GAUSS5;
 
 /// Gauss points of an arc.
@@ -57,20 +57,7 @@ impl Kernel for Sum<'_> {
         let x: Row = GAUSS5.map(|(position, _)| arc.from + wide * position);
         let s = places(curve, &x);
         let v = velocity.map_or([[0.0; POINTS]; 3], |v| places(v, &x));
-        let (mut f, mut normal) = ([[0.0; POINTS]; 3], [0.0; POINTS]);
-        if surface.friction.is_none() {
-            surface.normal_loads(face, &s, &v, &mut f, &mut normal);
-        } else {
-            for g in 0..POINTS {
-                let at = |x: &[Row; 3]| -> Vec3<f64> { [x[0][g], x[1][g], x[2][g]] };
-                if let Some(load) = surface.load::<false>(face, &at(&s), &at(&v), spin) {
-                    normal[g] = load.normal;
-                    for c in 0..3 {
-                        f[c][g] = load.f[c];
-                    }
-                }
-            }
-        }
+        let (mut f, mut normal) = surface.forces(face, &s, &v, spin);
         let mut shapes = [[0.0; POINTS]; 4];
         for g in 0..POINTS {
             let value = shape::value(x[g], length);
