@@ -1,7 +1,7 @@
 //! The only door to the physics: a scene goes in, committed states come out.
 
 use crate::equilibrium;
-use crate::integrator::{Problem, Rodas4, Trial};
+use crate::integrator::{Integrator, Method, Problem, Trial};
 use crate::ledger::Ledger;
 use crate::linalg::BlockTridiagonal;
 use crate::outputs::{Outputs, observe};
@@ -48,9 +48,8 @@ pub enum SimError {
     State(String),
 }
 
-/// Velocity error tolerated per tension error asked for: the estimate is of the lower-order formula, so the solution is better than it says; and
-/// the errors of many steps add up. With this the true error is about what was asked for (fmu-tests/rust/convergence.rs).
-const STRICTNESS: f64 = 1.5;
+/// A step in which Newton's method fails is halved or so, like one with this error.
+const STALLED: f64 = 4.0;
 /// Energy defect over the work done from which a run counts as degraded.
 const DEGRADED: f64 = 1e-2;
 /// What is said when numbers overflow.
@@ -61,7 +60,7 @@ const NOT_FINITE: &str = "the outputs are not finite; expected inputs and parame
 pub struct Simulation {
     scene: Scene,
     system: System,
-    method: Rodas4,
+    method: Method,
     state: State,
     backup: State,
     work: Work,
@@ -76,6 +75,8 @@ struct State {
     u: Vec<f64>,
     w: Vec<f64>,
     a: Vec<f64>,
+    /// The first node's acceleration, m/s².
+    base: [f64; 3],
     /// Axial forces, three per element, N.
     n: Vec<f64>,
     /// Sub-step that the error control would take next, s.
@@ -98,8 +99,9 @@ struct Work {
     mid: [Vec<f64>; 3],
     /// Factors of the mass matrix where it does not depend on the shape.
     constant_mass: Option<BlockTridiagonal>,
-    /// The outputs at the begin of a step.
+    /// The outputs at the begin of a step, and where the tangent was taken.
     outputs: Vec<f64>,
+    tangent: Vec<f64>,
 }
 
 impl Simulation {
@@ -128,10 +130,17 @@ impl Simulation {
         let state = State { u: zeros(), w: zeros(), a: zeros(), n: vec![0.0; 3 * scene.elements.len()], ..State::default() };
         Ok(Self {
             scene: scene.clone(),
-            method: Rodas4::new(n, &places),
+            method: Method::new(scene.solver.method, n, &places),
             backup: state.clone(),
             state,
-            work: Work { matrices, force: zeros(), mid: [zeros(), zeros(), zeros()], constant_mass, outputs: Vec::new() },
+            work: Work {
+                matrices,
+                force: zeros(),
+                mid: [zeros(), zeros(), zeros()],
+                constant_mass,
+                outputs: Vec::new(),
+                tangent: Vec::new(),
+            },
             outputs: Outputs {
                 sheaves: vec![Default::default(); scene.sheaves.len()],
                 cable: crate::outputs::CableOutputs { points: vec![Vector3::zeros(); scene.points], ..Default::default() },
@@ -223,20 +232,28 @@ impl Simulation {
         debug_assert_eq!(n, state.u.len());
         state.tension = weight;
         state.step = self.scene.solver.step_max;
-        self.system.set_tolerance(STRICTNESS * self.scene.solver.tolerance, self.state.tension);
+        self.set_tolerance();
         self.settle();
         self.system.save_axial(&mut self.state.n);
+        self.state.base = self.system.environment(time).base.map(|b| b.0[2]);
         self.observe();
         // Errors are measured by the greater of weight and first tension.
         self.state.tension = weight.max(self.outputs.cable.tension_max);
-        self.system.set_tolerance(STRICTNESS * self.scene.solver.tolerance, self.state.tension);
+        self.set_tolerance();
         self.system.keeps_axial = true;
+        self.method.forget();
         self.state.step = self.first_step();
         self.state.last = [0.0; 2];
         self.state.ledger = Ledger::start(&self.system.tally, self.state.tension * self.scene.cable.diameter);
         self.outputs.solver = Default::default();
         self.outputs.status = Default::default();
         if self.is_finite() { Ok(()) } else { Err(SimError::Start(NOT_FINITE.into())) }
+    }
+
+    /// What the scene's tolerance means for the velocities.
+    fn set_tolerance(&mut self) {
+        let relative = self.scene.solver.tolerance;
+        self.system.set_tolerance(self.method.strictness(relative) * relative, self.state.tension);
     }
 
     /// A first sub-step on the scale of the fastest axial wave through the cable.
@@ -264,7 +281,9 @@ impl Simulation {
         let (s, k) = (&mut self.state, &mut self.work);
         self.system.force(s.time, &s.u, &s.w, None, &mut k.force);
         s.ledger.reach(&self.system.tally, &s.w, &k.force);
-        if let Some(mass) = &k.constant_mass {
+        if !self.method.carries_over()
+            && let Some(mass) = &k.constant_mass
+        {
             s.a.copy_from_slice(&k.force);
             mass.solve(&mut s.a);
         }
@@ -308,6 +327,10 @@ impl Simulation {
         let kept = &mut self.work.outputs;
         kept.clear();
         self.outputs.visit(&mut |x| kept.push(*x));
+        let mut kept = std::mem::take(&mut self.work.tangent);
+        kept.clear();
+        self.visit_tangent(&mut |x| kept.push(*x));
+        self.work.tangent = kept;
         let (ship, winch) = (self.system.ship.clone(), self.winch_state());
         self.drive(begin, time - begin, inputs);
         match self.integrate(time).and_then(|()| self.arrive(time)) {
@@ -316,6 +339,11 @@ impl Simulation {
                 let mut kept = self.work.outputs.iter();
                 self.outputs.visit(&mut |x| *x = kept.next().copied().unwrap_or(*x));
                 self.state.copy(&self.backup);
+                let kept = std::mem::take(&mut self.work.tangent);
+                let mut numbers = kept.iter();
+                self.visit_tangent(&mut |x| *x = numbers.next().copied().unwrap_or(*x));
+                self.work.tangent = kept;
+                self.method.retake(&mut self.system);
                 self.system.restore_axial(&self.state.n);
                 self.system.ship = ship;
                 if let (FirstEnd::Winch { drive, .. }, Some(x)) = (&mut self.system.first, winch) {
@@ -335,6 +363,7 @@ impl Simulation {
             drive.commit(time);
         }
         self.system.save_axial(&mut self.state.n);
+        self.state.base = self.system.environment(time).base.map(|b| b.0[2]);
         self.conclude();
         self.observe();
         if self.is_finite() { Ok(()) } else { Err(format!("at t = {time} s: {NOT_FINITE}")) }
@@ -363,6 +392,14 @@ impl Simulation {
             }
             drive.advance(t, h, &path);
         }
+        // Where the first node's acceleration jumps the cable's does not, so that relative to it the whole cable's does.
+        let base = system.environment(t).base.map(|b| b.0[2]);
+        for a in self.state.a.chunks_exact_mut(6).take(system.arc.len()).skip(1) {
+            for c in 0..3 {
+                a[c] -= base[c] - self.state.base[c];
+            }
+        }
+        self.state.base = base;
     }
 
     fn integrate(&mut self, end: f64) -> Result<(), String> {
@@ -375,23 +412,26 @@ impl Simulation {
             // Equal parts of what remains, none longer than the error control wants (a hundredth more saves a sliver).
             let parts = (remaining / (1.01 * s.step.min(solver.step_max))).ceil().max(1.0);
             let mut h = remaining / parts;
-            self.system.linearize(s.time, &s.u, &s.w, &s.a, &mut k.matrices, &mut k.force);
+            self.method.begin(&mut self.system, s.time, [&s.u, &s.w, &s.a], &mut k.force);
             s.ledger.reach(&self.system.tally, &s.w, &k.force);
+            self.system.keep_axial();
             loop {
                 self.system.attempt(s.time, h);
-                let trial = self.method.attempt(&mut self.system, s.time, h, [&s.u, &s.w, &s.a], &k.matrices, &k.force);
-                s.counts[2] += 6;
+                let solves = self.method.counts()[0];
+                let trial = self.method.attempt(&mut self.system, s.time, h, [&s.u, &s.w, &s.a], &k.force);
+                s.counts[2] += self.method.counts()[0] - solves;
                 let (error, why) = match trial {
                     Trial::Error(e) if e.is_finite() => (e, "the estimated error stays too large"),
                     Trial::Error(_) => (f64::INFINITY, "the solution is not finite"),
                     Trial::Singular(_) => (f64::INFINITY, "the system's matrix is singular"),
+                    Trial::Stalled => (STALLED, "Newton's method does not converge"),
                 };
-                let factor = (0.85 * error.powf(-1.0 / Rodas4::ESTIMATE_ORDER as f64)).clamp(0.2, 5.0);
+                let order = self.method.estimate_order() as f64;
+                let factor = (0.85 * error.powf(-1.0 / order)).clamp(0.2, 5.0);
                 if error <= 1.0 {
                     // Gustafsson's predictive control (Hairer & Wanner, IV.8): what the error did last it will do again.
                     let [h0, e0] = s.last;
-                    let predicted =
-                        if h0 > 0.0 { factor * h / h0 * (e0 / error).powf(1.0 / Rodas4::ESTIMATE_ORDER as f64) } else { factor };
+                    let predicted = if h0 > 0.0 { factor * h / h0 * (e0 / error).powf(1.0 / order) } else { factor };
                     s.last = [h, error.max(1e-2)];
                     let wanted = h * factor.min(predicted.max(0.2));
                     // A step cut short by the communication point says nothing against longer ones.
@@ -399,12 +439,13 @@ impl Simulation {
                     break;
                 }
                 s.counts[1] += 1;
+                self.system.rewind();
                 h *= factor.min(0.9);
                 s.step = h;
                 if h < solver.step_min {
                     let node = match trial {
                         Trial::Singular(row) => row,
-                        Trial::Error(_) => self.worst_node(),
+                        Trial::Error(_) | Trial::Stalled => self.worst_node(),
                     };
                     return Err(self.failure(end, node, why));
                 }
@@ -419,10 +460,10 @@ impl Simulation {
                 mid_u[i] = 0.5 * (s.u[i] + u[i]) + h / 8.0 * (s.w[i] - w[i]);
                 mid_w[i] = 1.5 / h * (u[i] - s.u[i]) - 0.25 * (s.w[i] + w[i]);
             }
-            self.system.accept(u, w, Rodas4::WEIGHTS);
+            self.method.accept(&mut self.system);
             s.u.copy_from_slice(u);
             s.w.copy_from_slice(w);
-            if self.system.mass_varies() {
+            if self.method.carries_over() || self.system.mass_varies() {
                 s.a.copy_from_slice(a);
             }
             self.system.force(s.time + 0.5 * h, mid_u, mid_w, None, mid_f);
@@ -476,16 +517,22 @@ impl Simulation {
         self.system.surfaces = fresh.surfaces;
         self.system.load = fresh.load;
         self.system.turning = fresh.turning;
+        self.method.forget();
         if let (FirstEnd::Winch { drive, .. }, Some(winch)) = (&mut self.system.first, &scene.winch) {
             drive.retune(winch);
         }
-        self.system.set_tolerance(STRICTNESS * scene.solver.tolerance, self.state.tension);
+        self.set_tolerance();
         Ok(())
     }
 
     /// Quantities of the last committed state.
     pub fn outputs(&self) -> &Outputs {
         &self.outputs
+    }
+
+    /// Linear solves, tangents and factorizations since this simulation was made, whatever states it was put into.
+    pub fn effort(&self) -> [u64; 3] {
+        self.method.counts()
     }
 
     /// Time of the last committed state, s.
@@ -519,12 +566,13 @@ impl Simulation {
         }
         self.visit(&mut |x| *x = numbers.next().unwrap_or(f64::NAN));
         let t = self.state.time;
+        self.method.retake(&mut self.system);
         self.system.restore_axial(&self.state.n);
         if let FirstEnd::Winch { drive, .. } = &mut self.system.first {
             drive.restored(t);
         }
         self.outputs.status.message.clear();
-        self.system.set_tolerance(STRICTNESS * self.scene.solver.tolerance, self.state.tension);
+        self.set_tolerance();
         Ok(())
     }
 
@@ -542,7 +590,7 @@ impl Simulation {
         for x in [&mut s.time, &mut s.step, h, error, &mut s.tension, &mut s.first_angle] {
             visit(x);
         }
-        s.u.iter_mut().chain(&mut s.w).chain(&mut s.a).chain(&mut s.n).for_each(&mut *visit);
+        s.u.iter_mut().chain(&mut s.w).chain(&mut s.a).chain(&mut s.base).chain(&mut s.n).for_each(&mut *visit);
         for c in &mut s.counts {
             let mut x = *c as f64;
             visit(&mut x);
@@ -558,6 +606,15 @@ impl Simulation {
             drive.visit(visit);
         }
         self.outputs.visit(visit);
+        self.visit_tangent(visit);
+    }
+
+    /// Where the tangent was taken that a method may keep from step to step.
+    fn visit_tangent(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        if self.method.carries_over() {
+            self.method.visit(visit);
+            self.system.visit_origin(visit);
+        }
     }
 }
 
@@ -569,7 +626,7 @@ impl State {
         self.a.copy_from_slice(&o.a);
         self.n.copy_from_slice(&o.n);
         (self.time, self.step, self.last, self.tension, self.first_angle) = (o.time, o.step, o.last, o.tension, o.first_angle);
-        (self.counts, self.ledger) = (o.counts, o.ledger);
+        (self.counts, self.ledger, self.base) = (o.counts, o.ledger, o.base);
     }
 }
 

@@ -7,7 +7,7 @@ mod bench;
 use bench::{HEAVY_WIRE, NYLON, Wire, channel, heaving, relative_rms, run, started};
 use fairlead::cable::shape;
 use fairlead::outputs::Outputs;
-use fairlead::scene::Scene;
+use fairlead::scene::{Method, Scene};
 use fairlead::sim::{Inputs, Simulation};
 use nalgebra::{Rotation3, Vector3};
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -176,6 +176,16 @@ fn exact_ten_short_communication_steps_do_what_a_long_one_does() {
     }
 }
 
+/// Every method with a scene in air, one in water, and one with a turning sheave and turbulence.
+fn of_all_kinds() -> impl Iterator<Item = Scene> {
+    [Method::Rodas4, Method::TrBdf2, Method::Esdirk3, Method::Esdirk4].into_iter().flat_map(|method| {
+        [reeled("tangent", 1e-3, false), reeled("pinned", 1e-3, true), turning()].map(|mut scene| {
+            scene.solver.method = method;
+            scene
+        })
+    })
+}
+
 /// A cord over a sheave that turns, in a turbulent current.
 fn turning() -> Scene {
     CORD.scene(
@@ -190,7 +200,7 @@ fn turning() -> Scene {
 
 #[test]
 fn exact_rollback_is_bit_for_bit() {
-    for scene in [reeled("tangent", 1e-3, false), reeled("pinned", 1e-3, true), turning()] {
+    for scene in of_all_kinds() {
         let mut sim = started(&scene, &at_sea(0.0));
         run(&mut sim, 0.02, 0.3, at_sea, |_, _| {});
         let saved = bits(&sim);
@@ -207,33 +217,34 @@ fn exact_rollback_is_bit_for_bit() {
         assert_ne!(straight[0].0, saved);
         sim.read_state(&saved).expect("its own state");
         assert_eq!(bits(&sim), saved);
-        assert!(record(&mut sim) == straight, "the same simulation again");
+        assert!(record(&mut sim) == straight, "the same simulation again, {:?}", scene.solver.method);
         // Another one that has been elsewhere, and one that has never started.
         let mut other = started(&scene, &at_sea(0.7));
         run(&mut other, 0.05, 0.2, at_sea, |_, _| {});
         for mut other in [other, Simulation::new(&scene).expect("supported")] {
             other.read_state(&saved).expect("a state of the same scene");
-            assert!(record(&mut other) == straight, "another simulation");
+            assert!(record(&mut other) == straight, "another simulation, {:?}", scene.solver.method);
         }
         // A step that fails leaves no trace.
         sim.read_state(&saved).expect("its own state");
         let mut bad = at_sea(0.3);
         bad.body_force[0].value = f64::NAN;
         assert!(sim.step_to(0.32, &bad).is_err());
-        assert!(record(&mut sim) == straight, "after a failed step");
+        assert!(record(&mut sim) == straight, "after a failed step, {:?}", scene.solver.method);
         assert!(sim.read_state(&saved[8..]).is_err());
     }
 }
 
 #[test]
 fn exact_steps_allocate_nothing() {
-    for scene in [reeled("tangent", 1e-3, false), reeled("pinned", 1e-3, true), turning()] {
+    for scene in of_all_kinds() {
         let mut sim = started(&scene, &at_sea(0.0));
         run(&mut sim, 0.02, 0.2, at_sea, |_, _| {});
         let before = ALLOCATIONS.get();
         run(&mut sim, 0.02, 2.2, at_sea, |_, _| {});
         let count = ALLOCATIONS.get() - before;
-        println!("{count} allocations in 100 steps ({} sub-steps)", sim.outputs().solver.steps);
+        let method = scene.solver.method;
+        println!("{method:?}: {count} allocations in 100 steps ({} sub-steps)", sim.outputs().solver.steps);
         assert_eq!(count, 0);
         // The counter does count.
         let before = ALLOCATIONS.get();

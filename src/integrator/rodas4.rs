@@ -10,9 +10,9 @@
 //! Where M depends on u, the accelerations a join as algebraic unknowns of 0 = F − M(u) a; eliminating them leaves the same matrix and the
 //! extra terms −(M(u_i) − M) a_i, with increments A_i = W_i/g − a_i − Σ c_ij W_j / h.
 
-use super::{MOST_STAGES, Problem, Stage, Trial};
-use crate::linalg::{Bordered, Columns};
-use crate::math::lanes::{Kernel, widest};
+use super::vectors::{add, blend, dot};
+use super::{Factors, Integrator, MOST_STAGES, Problem, Stage, Trial};
+use crate::linalg::Columns;
 use crate::system::Matrices;
 
 const STAGES: usize = 6;
@@ -44,9 +44,11 @@ const C: [&[f64]; STAGES] = [
 ];
 
 /// Work space and the factors of the present step.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Rodas4 {
-    factors: Bordered,
+    factors: Factors,
+    /// The tangent where the step begins.
+    matrices: Matrices,
     /// K and M for the stages' products.
     stiffness: Columns,
     mass: Columns,
@@ -59,21 +61,20 @@ pub struct Rodas4 {
     shift: Vec<f64>,
     scratch: Vec<f64>,
     stage: [Vec<f64>; 3],
+    /// Solves, tangents and factorizations so far.
+    counts: [u64; 3],
 }
 
 impl Rodas4 {
     /// Order of the solution.
     pub const ORDER: usize = 4;
-    /// Of the increments in the solution.
-    pub const WEIGHTS: &[f64] = &WEIGHTS;
-    /// Order of the error estimate plus one: error ~ h^this.
-    pub const ESTIMATE_ORDER: usize = 4;
 
     /// For `size` unknowns, of which those `at` are coupled beyond the band.
     pub fn new(size: usize, at: &[usize]) -> Self {
         let zeros = || vec![vec![0.0; size]; STAGES];
         Self {
-            factors: Bordered::zeros(size / 6, at),
+            factors: Factors::new(size, at),
+            matrices: Matrices::zeros(size / 6),
             stiffness: Columns::zeros(size / 6),
             mass: Columns::zeros(size / 6),
             p: zeros(),
@@ -84,25 +85,52 @@ impl Rodas4 {
             shift: vec![0.0; size],
             scratch: vec![0.0; size],
             stage: std::array::from_fn(|_| vec![0.0; size]),
+            counts: [0; 3],
         }
     }
 
-    /// Tries a step of `h` from (t, u, w, a); `m` and `force` are the linearization there. The new state is in `state()` afterwards.
-    pub fn attempt<P: Problem>(&mut self, problem: &mut P, t: f64, h: f64, from: [&[f64]; 3], m: &Matrices, force: &[f64]) -> Trial {
+    fn stage_values(&mut self, i: usize, u0: &[f64], w0: &[f64], a0: &[f64], varies: bool) {
+        let [u, w, a] = &mut self.stage;
+        if i + 1 == STAGES {
+            // The last row of a_ij is the one before it and a one.
+            add(u, 1.0, &self.p[i - 1]);
+            add(w, 1.0, &self.w[i - 1]);
+            if varies {
+                add(a, 1.0, &self.a[i - 1]);
+            }
+            return;
+        }
+        blend(u, Some(u0), 1.0, A[i], &self.p);
+        blend(w, Some(w0), 1.0, A[i], &self.w);
+        if varies {
+            blend(a, Some(a0), 1.0, A[i], &self.a);
+        }
+    }
+}
+
+impl Integrator for Rodas4 {
+    fn estimate_order(&self) -> usize {
+        4
+    }
+
+    fn strictness(&self, _: f64) -> f64 {
+        1.5
+    }
+
+    fn begin<P: Problem>(&mut self, problem: &mut P, t: f64, from: [&[f64]; 3], force: &mut [f64]) {
+        problem.linearize(t, from[0], from[1], from[2], &mut self.matrices, force);
+        self.stiffness.take(&self.matrices.stiffness);
+        self.mass.take(&self.matrices.mass);
+        self.counts[1] += 1;
+    }
+
+    fn attempt<P: Problem>(&mut self, problem: &mut P, t: f64, h: f64, from: [&[f64]; 3], force: &[f64]) -> Trial {
         let g = GAMMA * h;
         let (u0, w0, a0) = (from[0], from[1], from[2]);
-        self.factors.core.combine(&m.mass, &m.damping, &m.stiffness, g);
-        for (k, coupling) in m.couplings.iter().enumerate() {
-            let (column, row) = self.factors.border(k);
-            blend(column, None, g, &[1.0], std::slice::from_ref(&coupling.damping_column));
-            blend(row, Some(&coupling.damping_row), 1.0, &[g], std::slice::from_ref(&coupling.stiffness_row));
-            row.iter_mut().for_each(|x| *x *= g);
-        }
-        if let Err(e) = self.factors.factor() {
+        self.counts[2] += 1;
+        if let Err(e) = self.factors.factor(&self.matrices, g) {
             return Trial::Singular(e.row);
         }
-        self.stiffness.take(&m.stiffness);
-        self.mass.take(&m.mass);
         let varies = problem.mass_varies();
         let driven = problem.time_derivative(t, h, u0, w0, force, &mut self.rate);
         for i in 0..STAGES {
@@ -121,9 +149,8 @@ impl Rodas4 {
             blend(&mut self.shift, Some(&self.stage[1]), 1.0 / h, C[i], &self.p);
             blend(&mut self.scratch, None, 1.0 / h, C[i], &self.w);
             self.stiffness.multiply_add(-g, &self.shift, &mut self.rhs);
-            for coupling in &m.couplings {
-                let product: f64 = coupling.stiffness_row.iter().zip(&self.shift).map(|(k, s)| k * s).sum();
-                self.rhs[coupling.at] -= g * product;
+            for coupling in &self.matrices.couplings {
+                self.rhs[coupling.at] -= g * dot(&coupling.stiffness_row, &self.shift);
             }
             // M (Σ c_ij W_j / h + a_i).
             if varies {
@@ -136,6 +163,7 @@ impl Rodas4 {
             for (w, r) in w.iter_mut().zip(&self.rhs) {
                 *w = g * r;
             }
+            self.counts[0] += 1;
             self.factors.solve(w);
             for ((p, w), s) in self.p[i].iter_mut().zip(&*w).zip(&self.shift) {
                 *p = g * (w + s);
@@ -159,171 +187,29 @@ impl Rodas4 {
         Trial::Error(if finite { problem.error_size(&self.w[STAGES - 1], &self.scratch) } else { f64::NAN })
     }
 
-    fn stage_values(&mut self, i: usize, u0: &[f64], w0: &[f64], a0: &[f64], varies: bool) {
-        let [u, w, a] = &mut self.stage;
-        if i + 1 == STAGES {
-            // The last row of a_ij is the one before it and a one.
-            add(u, 1.0, &self.p[i - 1]);
-            add(w, 1.0, &self.w[i - 1]);
-            if varies {
-                add(a, 1.0, &self.a[i - 1]);
-            }
-            return;
-        }
-        blend(u, Some(u0), 1.0, A[i], &self.p);
-        blend(w, Some(w0), 1.0, A[i], &self.w);
-        if varies {
-            blend(a, Some(a0), 1.0, A[i], &self.a);
-        }
-    }
-
-    /// u, w, a after a successful attempt (a only where M varies).
-    pub fn state(&self) -> [&[f64]; 3] {
+    fn state(&self) -> [&[f64]; 3] {
         [&self.stage[0], &self.stage[1], &self.stage[2]]
     }
 
-    /// The velocity error estimate of the last attempt.
-    pub fn error(&self) -> &[f64] {
+    fn error(&self) -> &[f64] {
         &self.w[STAGES - 1]
     }
-}
 
-/// out = base + s Σ c_j v_j.
-fn blend(out: &mut [f64], base: Option<&[f64]>, s: f64, c: &[f64], v: &[Vec<f64>]) {
-    widest(Blend { out, base, s, c, v });
-}
-
-struct Blend<'a> {
-    out: &'a mut [f64],
-    base: Option<&'a [f64]>,
-    s: f64,
-    c: &'a [f64],
-    v: &'a [Vec<f64>],
-}
-
-impl Kernel for Blend<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let Self { out, base, s, c, v } = self;
-        match base {
-            Some(base) => out.copy_from_slice(base),
-            None => out.fill(0.0),
-        }
-        let n = out.len();
-        let mut j = 0;
-        while j + 1 < c.len() {
-            let (c0, c1, v0, v1) = (s * c[j], s * c[j + 1], &v[j][..n], &v[j + 1][..n]);
-            for k in 0..n {
-                out[k] += c0 * v0[k] + c1 * v1[k];
-            }
-            j += 2;
-        }
-        if j < c.len() {
-            let (c0, v0) = (s * c[j], &v[j][..n]);
-            for k in 0..n {
-                out[k] += c0 * v0[k];
-            }
-        }
-    }
-}
-
-/// y += s x.
-fn add(y: &mut [f64], s: f64, x: &[f64]) {
-    for (y, x) in y.iter_mut().zip(x) {
-        *y += s * x;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// (1 + u²) ü = −4u − 0.3u̇ − u³ + cos 3t + …, one node whose six unknowns are the same oscillator six times, the forcing chosen so that
-    /// u = sin t + 0.2 solves it exactly.
-    struct Oscillator {
-        varying: bool,
+    fn accept<P: Problem>(&self, problem: &mut P) {
+        problem.accept(&self.stage[0], &self.stage[1], &WEIGHTS);
     }
 
-    impl Oscillator {
-        fn exact(t: f64) -> [f64; 3] {
-            [t.sin() + 0.2, t.cos(), -t.sin()]
-        }
-        fn mass(&self, u: f64) -> f64 {
-            if self.varying { 1.0 + u * u } else { 1.5 }
-        }
-        fn spring(u: f64, w: f64) -> f64 {
-            -4.0 * u - 0.3 * w - u * u * u - 0.2 * w * u
-        }
-        fn f(&self, t: f64, u: f64, w: f64) -> f64 {
-            let [x, v, a] = Self::exact(t);
-            Self::spring(u, w) + self.mass(x) * a - Self::spring(x, v)
-        }
+    fn forget(&mut self) {}
+
+    fn visit(&mut self, _: &mut dyn FnMut(&mut f64)) {}
+
+    fn retake<P: Problem>(&mut self, _: &mut P) {}
+
+    fn carries_over(&self) -> bool {
+        false
     }
 
-    impl Problem for Oscillator {
-        fn size(&self) -> usize {
-            6
-        }
-        fn force(&mut self, t: f64, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64]) {
-            for i in 0..6 {
-                f[i] = self.f(t, u[i], w[i]) - a.map_or(0.0, |a| self.mass(u[i]) * a[i]);
-            }
-        }
-        fn stage_force(&mut self, _: Stage, t: f64, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64]) {
-            self.force(t, u, w, a, f);
-        }
-        fn linearize(&mut self, t: f64, u: &[f64], w: &[f64], a: &[f64], m: &mut Matrices, f: &mut [f64]) {
-            self.force(t, u, w, None, f);
-            for i in 0..6 {
-                m.mass.diagonal[0][i][i] = self.mass(u[i]);
-                m.damping.diagonal[0][i][i] = 0.3 + 0.2 * u[i];
-                let turn = if self.varying { 2.0 * u[i] * a[i] } else { 0.0 };
-                m.stiffness.diagonal[0][i][i] = 4.0 + 3.0 * u[i] * u[i] + 0.2 * w[i] + turn;
-            }
-        }
-        fn time_derivative(&mut self, t: f64, _: f64, u: &[f64], w: &[f64], force: &[f64], f: &mut [f64]) -> bool {
-            let d = 1e-6;
-            for i in 0..6 {
-                f[i] = (self.f(t + d, u[i], w[i]) - force[i]) / d;
-            }
-            true
-        }
-        fn mass_varies(&self) -> bool {
-            self.varying
-        }
-        fn error_size(&self, e: &[f64], _: &[f64]) -> f64 {
-            e[0].abs()
-        }
-    }
-
-    fn error(varying: bool, steps: usize) -> f64 {
-        let mut problem = Oscillator { varying };
-        let mut method = Rodas4::new(6, &[]);
-        let mut m = Matrices::zeros(1);
-        let mut f = vec![0.0; 6];
-        let [x, v, a] = Oscillator::exact(0.0);
-        let mut y = [vec![x; 6], vec![v; 6], vec![a; 6]];
-        let h = 2.0 / steps as f64;
-        for i in 0..steps {
-            let t = i as f64 * h;
-            problem.linearize(t, &y[0], &y[1], &y[2], &mut m, &mut f);
-            assert!(matches!(method.attempt(&mut problem, t, h, [&y[0], &y[1], &y[2]], &m, &f), Trial::Error(e) if e.is_finite()));
-            let new = method.state();
-            y = [new[0].to_vec(), new[1].to_vec(), new[2].to_vec()];
-        }
-        let [x, v, a] = Oscillator::exact(2.0);
-        let acceleration = if varying { (y[2][3] - a).abs() } else { 0.0 };
-        (y[0][3] - x).abs().max((y[1][3] - v).abs()).max(acceleration)
-    }
-
-    #[test]
-    fn exact_order_is_the_declared_one() {
-        for varying in [false, true] {
-            let (coarse, fine) = (error(varying, 20), error(varying, 40));
-            let order = (coarse / fine).log2();
-            assert!(order > Rodas4::ORDER as f64 - 0.3, "varying {varying}: order {order}, errors {coarse} {fine}");
-        }
+    fn counts(&self) -> [u64; 3] {
+        self.counts
     }
 }

@@ -358,4 +358,10 @@ pub struct Solver {
 pub enum Method {
     /// Rosenbrock, order 4(3), L-stable, stiffly accurate (Hairer & Wanner).
     Rodas4,
+    /// Trapezoidal rule and backward difference, order 2, L-stable, with kept factors (Bank et al.).
+    TrBdf2,
+    /// ESDIRK3(2)5L[2]SA, L-stable, with kept factors (Kennedy & Carpenter).
+    Esdirk3,
+    /// ESDIRK4(3)6L[2]SA, the same.
+    Esdirk4,
 }

@@ -97,7 +97,7 @@ pub struct ShipDrive {
 }
 
 /// The ship's frame at one instant.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Frame {
     /// Origin with three time derivatives.
     pub origin: [Jet; 3],

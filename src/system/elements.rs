@@ -87,7 +87,17 @@ pub enum Axially<'a> {
     Begin,
     /// From the unknowns, at a stage of the step that has begun.
     Stage(Stage<'a>),
+    /// From the unknowns, at an iterate of Newton's method.
+    Iterate {
+        /// Whether it is the stage's first.
+        first: bool,
+    },
 }
+
+/// Which of these a pass is compiled for: the law's forces, those of a stage, those of an iterate.
+const LAW: u8 = 0;
+const STAGE: u8 = 1;
+const ITERATE: u8 = 2;
 
 /// Axial unknowns at the Gauss points of elements side by side.
 pub type Axial = [AxialUnknown<LANES>; 3];
@@ -199,8 +209,9 @@ impl<const TANGENT: bool> Kernel for Pass<'_, TANGENT> {
     fn run(self) -> Tally {
         let Self { chain, env, u, w, a, axially, axial, forces, matrices } = self;
         match axially {
-            Axially::Stage(_) => chain.pass_with::<TANGENT, true>(env, u, w, a, axially, axial, forces, matrices),
-            _ => chain.pass_with::<TANGENT, false>(env, u, w, a, axially, axial, forces, matrices),
+            Axially::Iterate { .. } => chain.pass_with::<TANGENT, ITERATE>(env, u, w, a, axially, axial, forces, matrices),
+            Axially::Stage(_) => chain.pass_with::<TANGENT, STAGE>(env, u, w, a, axially, axial, forces, matrices),
+            _ => chain.pass_with::<TANGENT, LAW>(env, u, w, a, axially, axial, forces, matrices),
         }
     }
 }
@@ -244,7 +255,7 @@ impl Chain {
     }
 
     #[inline(always)]
-    fn pass_with<const TANGENT: bool, const STAGE: bool>(
+    fn pass_with<const TANGENT: bool, const OF: u8>(
         &self,
         env: &Environment,
         u: &[f64],
@@ -263,7 +274,7 @@ impl Chain {
             let lanes = LANES.min(self.lengths.len() - first);
             self.gather_batch(env, first, u, w, a, &mut batch);
             for ((station, slopes), axial) in stations.iter().zip(&mut slopes).zip(&mut axial[first / LANES]) {
-                self.resist::<TANGENT, STAGE>(&mut batch, station, slopes, axially, axial);
+                self.resist::<TANGENT, OF>(&mut batch, station, slopes, axially, axial);
             }
             let wet = batch.wet.0.iter().any(|x| *x > 0.0);
             if let Some(water) = &self.water
@@ -300,22 +311,28 @@ impl Chain {
 
     /// The step that began with the last tangent ends at (u, w), of the stages' increments weighted so.
     pub fn accept(&self, u: &[f64], w: &[f64], weights: &[f64], axial: &mut [Axial]) {
+        axial.iter_mut().flatten().for_each(|a| a.enter(weights));
+        self.at_stations(u, w, axial, |axial, l, strains| axial.end(l, &self.section.resistance::<false>(strains), strains));
+    }
+
+    /// Newton's method has ended at (u, w).
+    pub fn settle(&self, u: &[f64], w: &[f64], axial: &mut [Axial]) {
+        self.at_stations(u, w, axial, |axial, l, strains| axial.settle(l, strains));
+    }
+
+    /// Calls `each` with every axial unknown and the slopes there.
+    fn at_stations(&self, u: &[f64], w: &[f64], axial: &mut [Axial], each: impl Fn(&mut AxialUnknown<LANES>, usize, &Strains)) {
         let stations = GAUSS3.map(Station::new);
         for (k, axial) in axial.iter_mut().enumerate() {
             for (station, axial) in stations.iter().zip(axial) {
-                axial.enter(weights);
                 for l in 0..LANES.min(self.lengths.len() - k * LANES) {
                     let e = k * LANES + l;
+                    let length = self.lengths[e];
                     let slope = |x: &[f64]| {
                         let q = gather(x, e);
-                        along(
-                            &station.b,
-                            &[axpy(&q[2], -1.0, &q[0]), scale(self.lengths[e], &q[1]), scale(self.lengths[e], &q[3])],
-                            1.0 / self.lengths[e],
-                        )
+                        along(&station.b, &[axpy(&q[2], -1.0, &q[0]), scale(length, &q[1]), scale(length, &q[3])], 1.0 / length)
                     };
-                    let strains = Strains { p: slope(u), pp: [0.0; 3], vp: slope(w), vpp: [0.0; 3] };
-                    axial.end(l, &self.section.resistance::<false>(&strains), &strains);
+                    each(axial, l, &Strains { p: slope(u), pp: [0.0; 3], vp: slope(w), vpp: [0.0; 3] });
                 }
             }
         }
@@ -351,7 +368,7 @@ impl Chain {
 
     /// Internal forces at a Gauss point.
     #[inline(always)]
-    fn resist<const TANGENT: bool, const STAGE: bool>(
+    fn resist<const TANGENT: bool, const OF: u8>(
         &self,
         batch: &mut Batch,
         station: &Station,
@@ -365,9 +382,10 @@ impl Chain {
             Axially::Stage(stage) => stage,
             _ => Stage { index: 0, weights: &[] },
         };
-        if STAGE {
+        if OF == STAGE {
             axial.enter(stage.weights);
         }
+        let first = if matches!(axially, Axially::Iterate { first: true }) { 1.0 } else { 0.0 };
         let anew = if matches!(axially, Axially::Law) { 1.0 } else { 0.0 };
         for l in 0..LANES {
             let i = batch.inverse.0[l];
@@ -377,8 +395,10 @@ impl Chain {
             if TANGENT {
                 axial.begin(l, &r, &strains, anew);
             }
-            if STAGE {
+            if OF == STAGE {
                 r.n = axial.force(l, stage.index, &r, &strains);
+            } else if OF == ITERATE {
+                r.n = axial.iterate(l, first, &r, &strains);
             }
             let wl = weight * batch.length.0[l];
             batch.elastic.0[l] += wl * r.energy;

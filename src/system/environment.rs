@@ -6,7 +6,7 @@ use crate::math::lanes::Vec3;
 use crate::ship::Frame;
 
 /// Boundary motion, ship's frame, flow and forces at one instant.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Environment {
     /// The instant, s.
     pub time: f64,
@@ -24,4 +24,16 @@ pub struct Environment {
     pub gravity: Vec3<f64>,
     /// External force on the body, N.
     pub body_force: Vec3<f64>,
+}
+
+impl Environment {
+    /// Every number, for snapshots.
+    pub fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        visit(&mut self.time);
+        let frame = &mut self.frame;
+        let jets = self.base.iter_mut().chain(&mut frame.origin).chain(frame.rotation.iter_mut().flatten());
+        let vectors = [&mut self.far_end_acceleration, &mut self.tangent, &mut self.flow.velocity, &mut self.flow.acceleration];
+        let others = vectors.into_iter().chain([&mut self.gravity, &mut self.body_force]);
+        jets.flat_map(|j| &mut j.0).chain(others.flatten()).for_each(visit);
+    }
 }

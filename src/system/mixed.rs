@@ -19,6 +19,10 @@
 //! g = ∂ε/∂r_p, and Σ'·y the derivative at the step's begin along the change of (r_p, ṙ_p).
 //! ```
 //!
+//! Newton's method in an implicit stage has the same trouble, and the same cure: iterate k knows N_k, its residual has N_k g_k + (Σ_k − N_k) g_0
+//! in place of Σ_k g_k, and the next N is Σ_k + Σ'·(y_{k+1} − y_k), with Σ' and g_0 those of the kept tangent. It then converges at a rate of
+//! about Δθ instead of EA Δθ²/N, so that the factors can be kept.
+//!
 //! N is part of the state, so that a strain's error, EA times which may be many times the tension, is not taken for a force; each step brings
 //! it nearer to Σ again.
 
@@ -29,7 +33,7 @@ use crate::math::lanes::{Lanes, Vec3, axpy, dot, lane, set_lane};
 /// N of one Gauss point of `W` elements side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxialUnknown<const W: usize> {
-    /// N_0, N.
+    /// N_0; in a Newton method's step that of the stage at hand, N.
     pub now: Lanes<W>,
     /// g_0.
     g: [Lanes<W>; 3],
@@ -37,8 +41,12 @@ pub struct AxialUnknown<const W: usize> {
     by_p: [Lanes<W>; 3],
     damping: Lanes<W>,
     ea: Lanes<W>,
-    /// N_0 − Σ'·y_0, N.
+    /// N_0 − Σ'·y_0, in Newton's method Σ_k − Σ'·y_k, N.
     offset: Lanes<W>,
+    /// N where the step began, N.
+    kept: Lanes<W>,
+    /// N where the tangent was taken, N.
+    pub origin: Lanes<W>,
     /// Σ_j − N_j, N.
     gaps: [Lanes<W>; MOST_STAGES],
     /// Σ_{j<i} a_ij (Σ_j − N_j) of the stage at hand, N.
@@ -54,6 +62,8 @@ impl<const W: usize> AxialUnknown<W> {
         damping: Lanes::ZERO,
         ea: Lanes::ZERO,
         offset: Lanes::ZERO,
+        kept: Lanes::ZERO,
+        origin: Lanes::ZERO,
         gaps: [Lanes::ZERO; MOST_STAGES],
         drift: Lanes::ZERO,
     };
@@ -63,6 +73,7 @@ impl<const W: usize> AxialUnknown<W> {
     pub fn begin(&mut self, l: usize, r: &Resistance, s: &Strains, anew: f64) {
         let now = anew * r.axial + (1.0 - anew) * self.now.0[l];
         self.now.0[l] = now;
+        self.origin.0[l] = now;
         self.gaps[0].0[l] = r.axial - now;
         set_lane(&mut self.g, l, r.g);
         set_lane(&mut self.by_p, l, r.by_p);
@@ -82,21 +93,66 @@ impl<const W: usize> AxialUnknown<W> {
         }
     }
 
+    /// Σ'·y, N.
+    #[inline(always)]
+    fn slope(&self, l: usize, s: &Strains) -> f64 {
+        dot(&lane(&self.by_p, l), &s.p) + self.damping.0[l] * dot(&lane(&self.g, l), &s.vp)
+    }
+
     /// N of element `l` at a stage.
     #[inline(always)]
     fn carried(&self, l: usize, s: &Strains) -> f64 {
-        let rate = dot(&lane(&self.g, l), &s.vp);
-        self.offset.0[l] + dot(&lane(&self.by_p, l), &s.p) + self.damping.0[l] * rate + self.drift.0[l]
+        self.offset.0[l] + self.slope(l, s) + self.drift.0[l]
     }
 
     /// The force of element `l` at a stage, given that of the law.
     #[inline(always)]
     pub fn force(&mut self, l: usize, stage: usize, r: &Resistance, s: &Strains) -> Vec3<f64> {
-        // Where the law has switched between taut and slack its slope at the step's begin says nothing.
-        let same = if r.ea == self.ea.0[l] { 1.0 } else { 0.0 };
-        let gap = same * (r.axial - self.carried(l, s));
+        let gap = self.same(l, r) * (r.axial - self.carried(l, s));
         self.gaps[stage].0[l] = gap;
+        self.turned(l, r, gap)
+    }
+
+    /// 1, or 0 where the law has switched between taut and slack, so that its slope at the step's begin says nothing.
+    #[inline(always)]
+    fn same(&self, l: usize, r: &Resistance) -> f64 {
+        if r.ea == self.ea.0[l] { 1.0 } else { 0.0 }
+    }
+
+    /// The law's force with a part of N, `gap`, along g_0.
+    #[inline(always)]
+    fn turned(&self, l: usize, r: &Resistance, gap: f64) -> Vec3<f64> {
         axpy(&axpy(&r.n, -gap, &r.g), gap, &lane(&self.g, l))
+    }
+
+    /// The force of element `l` at an iterate of Newton's method, given that of the law; `first` is 1 at a stage's first and 0 later.
+    #[inline(always)]
+    pub fn iterate(&mut self, l: usize, first: f64, r: &Resistance, s: &Strains) -> Vec3<f64> {
+        let slope = self.slope(l, s);
+        let n = first * self.now.0[l] + (1.0 - first) * (self.offset.0[l] + slope);
+        self.offset.0[l] = r.axial - slope;
+        self.turned(l, r, self.same(l, r) * (r.axial - n))
+    }
+
+    /// Newton's method has ended with element `l` in this shape.
+    #[inline(always)]
+    pub fn settle(&mut self, l: usize, s: &Strains) {
+        self.now.0[l] = self.offset.0[l] + self.slope(l, s);
+    }
+
+    /// A step begins here.
+    pub fn keep(&mut self) {
+        self.kept = self.now;
+    }
+
+    /// As where the tangent was taken.
+    pub fn back_to_origin(&mut self) {
+        self.now = self.origin;
+    }
+
+    /// The step is tried again.
+    pub fn rewind(&mut self) {
+        self.now = self.kept;
     }
 
     /// The step ends with element `l` in the shape `s`, where the law gives `r`; its weights were entered as a stage's.

@@ -21,6 +21,7 @@ pub use environment::Environment;
 pub use far_end::FarEnd;
 pub use load::RigidLoad;
 pub use matrices::{Coupling, Matrices};
+use mixed::AxialUnknown;
 pub use points::ElementPoint;
 pub use turning::TurningSheave;
 
@@ -147,6 +148,8 @@ pub struct System {
     tolerance: f64,
     matrices: Matrices,
     axial: Vec<Axial>,
+    /// Where the last tangent was taken.
+    origin: Environment,
 }
 
 impl System {
@@ -206,6 +209,7 @@ impl System {
             tolerance: 1.0,
             matrices: Matrices::default(),
             axial,
+            origin: Environment::default(),
         }
     }
 
@@ -463,9 +467,15 @@ impl System {
         }
     }
 
-    /// The step that began with the last tangent ends at (u, w), of the stages' increments weighted so.
-    pub fn accept(&mut self, u: &[f64], w: &[f64], weights: &[f64]) {
-        self.chain.accept(u, w, weights, &mut self.axial);
+    /// A step begins; its tries start from the axial forces as they are.
+    pub fn keep_axial(&mut self) {
+        self.axial.iter_mut().flatten().for_each(AxialUnknown::keep);
+    }
+
+    /// Every number beside u, w, a that the last tangent depends on, for snapshots.
+    pub fn visit_origin(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        self.origin.visit(visit);
+        self.axial.iter_mut().flatten().flat_map(|a| &mut a.origin.0).for_each(visit);
     }
 
     /// Copies the state's axial forces, three per element (N), out of the system.
@@ -490,6 +500,21 @@ impl System {
         self.matrices = none;
         f[..3].fill(0.0);
         self.drive_far_end(&env, a, f);
+    }
+
+    /// F, and M, D, K of F − M(u) a, in the environment of `origin`.
+    fn tangent(&mut self, u: &[f64], w: &[f64], a: &[f64], m: &mut Matrices, f: &mut [f64]) {
+        let env = self.origin;
+        m.clear(self.turning.iter().map(|s| s.at));
+        // The tangent wants F − M(u) a, the caller F: add M a back.
+        let varies = self.mass_varies();
+        self.evaluate::<true>(&env, u, w, varies.then_some(a), if self.keeps_axial { Axially::Begin } else { Axially::Law }, f, m);
+        if varies {
+            m.mass.multiply_add(1.0, a, f);
+        }
+        self.pin(m);
+        f[..3].fill(0.0);
+        self.drive_far_end(&env, None, f);
     }
 
     /// Forces with all inertia, nothing zeroed: rows of the first node hold what the support must balance.
@@ -537,19 +562,15 @@ impl Problem for System {
     }
 
     fn linearize(&mut self, t: f64, u: &[f64], w: &[f64], a: &[f64], m: &mut Matrices, f: &mut [f64]) {
-        let env = self.environment(t);
-        m.clear(self.turning.iter().map(|s| s.at));
-        // The tangent wants F − M(u) a, the caller F: add M a back.
-        let varies = self.mass_varies();
-        self.evaluate::<true>(&env, u, w, varies.then_some(a), if self.keeps_axial { Axially::Begin } else { Axially::Law }, f, m);
-        if varies {
-            m.mass.multiply_add(1.0, a, f);
-        }
-        self.pin(m);
-        f[..3].fill(0.0);
-        self.drive_far_end(&env, None, f);
+        self.origin = self.environment(t);
+        self.tangent(u, w, a, m, f);
     }
 
+    fn relinearize(&mut self, u: &[f64], w: &[f64], a: &[f64], m: &mut Matrices, f: &mut [f64]) {
+        self.axial.iter_mut().flatten().for_each(AxialUnknown::back_to_origin);
+        self.keeps_axial = true;
+        self.tangent(u, w, a, m, f);
+    }
     fn time_derivative(&mut self, t: f64, scale: f64, u: &[f64], w: &[f64], force: &[f64], f: &mut [f64]) -> bool {
         let winch_moves = matches!(&self.first, FirstEnd::Winch { drive, .. } if drive.is_moving());
         let inputs_move = self.current.iter().chain(&self.body_force).any(|r| r.rate != 0.0);
@@ -573,7 +594,23 @@ impl Problem for System {
         self.chain.water.is_some() || self.load.is_some()
     }
 
-    fn error_size(&self, e: &[f64], mass_e: &[f64]) -> f64 {
-        (e.iter().zip(mass_e).map(|(a, b)| a * b).sum::<f64>().max(0.0) / self.tolerance).sqrt()
+    fn accept(&mut self, u: &[f64], w: &[f64], weights: &[f64]) {
+        self.chain.accept(u, w, weights, &mut self.axial);
+    }
+
+    fn iterate(&mut self, first: bool, t: f64, u: &[f64], w: &[f64], a: &[f64], f: &mut [f64]) {
+        self.force_at(Axially::Iterate { first }, t, u, w, Some(a), f);
+    }
+
+    fn settle(&mut self, u: &[f64], w: &[f64]) {
+        self.chain.settle(u, w, &mut self.axial);
+    }
+
+    fn rewind(&mut self) {
+        self.axial.iter_mut().flatten().for_each(AxialUnknown::rewind);
+    }
+
+    fn size_of(&self, energy: f64) -> f64 {
+        (energy / self.tolerance).sqrt()
     }
 }
