@@ -1,24 +1,23 @@
 //! One pass over the elements, several side by side: internal forces, weight, inertia and, where an element is all under water, fluid forces;
 //! with `TANGENT` also M, D and K.
 
+mod batch;
+mod tangent;
+mod water;
+
 use super::environment::Environment;
-use super::matrices::{Matrices, element_block};
+use super::matrices::Matrices;
 use super::mixed::AxialUnknown;
 use super::wetting::{Height, bounds};
 use crate::cable::section::{Section, Strains};
 use crate::cable::shape;
-use crate::hydro::line::{LineInWater, LinePoint, Stream};
+use crate::hydro::line::LineInWater;
 use crate::integrator::Stage;
-use crate::linalg::BlockTridiagonal;
-use crate::math::lanes::{Kernel, Lanes, Vec3, axpy, dot, lane, scale, set_lane, widest};
+use crate::math::lanes::{Kernel, Vec3, axpy, lane, scale, set_lane, widest};
 use crate::math::quadrature::GAUSS3;
-
-/// Elements side by side.
-const LANES: usize = 8;
-type Row = Lanes<LANES>;
-/// Vectors and matrices of each.
-type Rows3 = [Row; 3];
-type Rows33 = [Row; 9];
+use batch::{Batch, LANES, Row, Rows3, SPANS, STILL, Slopes, Station, along, gather_lane, spans};
+use tangent::{Place, stiffness};
+use water::immerse;
 
 /// Sums over the cable that the energy ledger and the integrator want.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -64,20 +63,6 @@ pub fn gather(x: &[f64], e: usize) -> [Vec3<f64>; 4] {
     [[x[0], x[1], x[2]], [x[3], x[4], x[5]], [x[6], x[7], x[8]], [x[9], x[10], x[11]]]
 }
 
-#[inline(always)]
-fn gather_lane(x: &[f64], e: usize, length: f64, l: usize, to: &mut [Rows3; 4]) {
-    let q = gather(x, e);
-    for c in 0..3 {
-        to[0][c].0[l] = q[0][c];
-        to[1][c].0[l] = q[1][c] * length;
-        to[2][c].0[l] = q[2][c];
-        to[3][c].0[l] = q[3][c] * length;
-    }
-}
-
-/// Slots and differences of slots that r_p depends on: r(L) − r(0), L r_p(0), L r_p(L).
-const SPANS: usize = 3;
-
 /// Where the axial forces come from.
 #[derive(Clone, Copy, Debug)]
 pub enum Axially<'a> {
@@ -114,81 +99,6 @@ pub fn axial_forces_mut(axial: &mut [Axial]) -> impl Iterator<Item = &mut f64> {
         points.flat_map(|((a, b), c)| [a, b, c])
     })
 }
-
-/// A Gauss point of the element of unit length, on whose slots (r(0), L r_p(0), r(L), L r_p(L)) the shape functions are pure numbers.
-#[derive(Clone, Copy)]
-struct Station {
-    weight: f64,
-    /// s.
-    s: [f64; 4],
-    /// ds/dξ by span.
-    b: [f64; SPANS],
-    /// d²s/dξ² by span.
-    d: [f64; SPANS],
-}
-
-impl Station {
-    #[inline(always)]
-    fn new((x, weight): (f64, f64)) -> Self {
-        let ([_, b1, ba, b3], [_, d1, da, d3]) = (shape::slope(x, 1.0), shape::second(x, 1.0));
-        Self { weight, s: shape::value(x, 1.0), b: [ba, b1, b3], d: [da, d1, d3] }
-    }
-}
-
-/// Elements side by side as elements of unit length.
-#[derive(Default)]
-struct Batch {
-    length: Row,
-    inverse: Row,
-    /// 1 where all under water.
-    wet: Row,
-    /// Slots of u, w, a.
-    u: [Rows3; 4],
-    w: [Rows3; 4],
-    a: [Rows3; 4],
-    /// Forces on the slots.
-    f: [Rows3; 4],
-    elastic: Row,
-    power: Row,
-    kinetic: Row,
-    turning: Row,
-}
-
-/// What the tangent needs of a Gauss point, of elements side by side.
-#[derive(Clone, Copy)]
-struct Slopes {
-    /// Weighted derivatives of the resistance by ξ-derivatives.
-    k_pp: Rows33,
-    k_pq: Rows33,
-    k_qp: Rows33,
-    k_qq: Rows33,
-    /// Weighted dampings and their dyads' vectors, see `Resistance`.
-    c_axial: Row,
-    g: Rows3,
-    c_bending: Row,
-    e: [Rows3; SPANS],
-    /// Weighted derivatives of the fluid force.
-    dz: Rows3,
-    dv: Rows33,
-    dp: Rows33,
-    mass: Rows33,
-}
-
-const NONE: Rows33 = [Row::ZERO; 9];
-const STILL: Slopes = Slopes {
-    k_pp: NONE,
-    k_pq: NONE,
-    k_qp: NONE,
-    k_qq: NONE,
-    c_axial: Row::ZERO,
-    g: [Row::ZERO; 3],
-    c_bending: Row::ZERO,
-    e: [[Row::ZERO; 3]; SPANS],
-    dz: [Row::ZERO; 3],
-    dv: NONE,
-    dp: NONE,
-    mass: NONE,
-};
 
 struct Pass<'a, const TANGENT: bool> {
     chain: &'a Chain,
@@ -451,274 +361,4 @@ impl Chain {
             }
         }
     }
-
-    /// D of elements side by side.
-    #[inline(always)]
-    fn damping(&self, stations: &[Station; 3], slopes: &[Slopes; 3], wet: bool, inverse: &Row, to: &Place, out: &mut BlockTridiagonal) {
-        if !(wet || self.section.is_damped()) {
-            return;
-        }
-        let c = self.section.gradient_damping;
-        let across = moments(stations, |x| (x.s, x.s.map(|s| -s)));
-        let mut t = [[Row::ZERO; 4]; 4];
-        for r in 0..3 {
-            for col in 0..3 {
-                if self.section.is_damped() {
-                    let mut on = [[Row::ZERO; SPANS]; SPANS];
-                    for (station, at) in stations.iter().zip(slopes) {
-                        let b = &station.b;
-                        let direct = if r == col { c * station.weight } else { 0.0 };
-                        for l in 0..LANES {
-                            let axial = at.c_axial.0[l] * at.g[r].0[l] * at.g[col].0[l] + direct * inverse.0[l];
-                            for j in 0..SPANS {
-                                let (x, e) = (axial * b[j], at.c_bending.0[l] * at.e[j][col].0[l]);
-                                for i in 0..SPANS {
-                                    on[i][j].0[l] += b[i] * x + at.e[i][r].0[l] * e;
-                                }
-                            }
-                        }
-                    }
-                    spread(&on, &mut t);
-                } else {
-                    t = [[Row::ZERO; 4]; 4];
-                }
-                if wet {
-                    let rc = 3 * r + col;
-                    add_moments(&across, [&slopes[0].dv[rc], &slopes[1].dv[rc], &slopes[2].dv[rc]], &mut t);
-                }
-                to.scatter(&mut t, r, col, out);
-            }
-        }
-    }
-
-    /// M of elements side by side.
-    #[inline(always)]
-    fn inertia(&self, stations: &[Station; 3], slopes: &[Slopes; 3], wet: bool, to: &Place, out: &mut BlockTridiagonal) {
-        for l in 0..to.lanes {
-            let (e, mass) = (to.first + l, shape::mass(to.length.0[l]));
-            for i in 0..4 {
-                for j in 0..4 {
-                    let block = element_block(out, e, i, j);
-                    for c in 0..3 {
-                        block[3 * (i % 2) + c][3 * (j % 2) + c] += mass[i][j] * self.mass_per_length;
-                    }
-                }
-            }
-        }
-        if !wet {
-            return;
-        }
-        let across = moments(stations, |x| (x.s, x.s));
-        for r in 0..3 {
-            for c in 0..3 {
-                let mut t = [[Row::ZERO; 4]; 4];
-                let rc = 3 * r + c;
-                add_moments(&across, [&slopes[0].mass[rc], &slopes[1].mass[rc], &slopes[2].mass[rc]], &mut t);
-                to.scatter(&mut t, r, c, out);
-            }
-        }
-    }
-}
-
-/// Lane `l` of a Gauss point as the water sees it.
-#[inline(always)]
-fn fluid_point(env: &Environment, batch: &Batch, station: &Station, l: usize) -> LinePoint {
-    let (s, b, i) = (&station.s, &station.b, batch.inverse.0[l]);
-    let (u, w, a) = (value(s, &batch.u, l), value(s, &batch.w, l), value(s, &batch.a, l));
-    let base = &env.base;
-    LinePoint {
-        z: u[2] + base[2].0[0],
-        v: [w[0] + base[0].0[1], w[1] + base[1].0[1], w[2] + base[2].0[1]],
-        p: along(b, &spans(&batch.u, l), i),
-        vp: along(b, &spans(&batch.w, l), i),
-        a: [a[0] + base[0].0[2], a[1] + base[1].0[2], a[2] + base[2].0[2]],
-        w,
-    }
-}
-
-#[inline(always)]
-fn stream_lane(x: &[Rows3; 2], l: usize) -> Stream {
-    (lane(&x[0], l), lane(&x[1], l))
-}
-
-/// Lane `l` of Σ s_i q_i.
-#[inline(always)]
-fn value(s: &[f64; 4], q: &[Rows3; 4], l: usize) -> Vec3<f64> {
-    std::array::from_fn(|c| s[0] * q[0][c].0[l] + s[1] * q[1][c].0[l] + s[2] * q[2][c].0[l] + s[3] * q[3][c].0[l])
-}
-
-/// Fluid forces at a Gauss point.
-#[inline(always)]
-fn immerse<const TANGENT: bool, const CROSS_FLOW: bool>(
-    water: &LineInWater,
-    env: &Environment,
-    batch: &mut Batch,
-    station: &Station,
-    slopes: &mut Slopes,
-) {
-    let Station { weight, s, .. } = *station;
-    // Look-ups cannot go side by side, so they have loops of their own.
-    let (mut z, mut re, mut cd) = (Row::ZERO, Row::ZERO, [Row::ZERO; 2]);
-    let mut stream = [[Row::ZERO; 3]; 2];
-    for l in 0..LANES {
-        z.0[l] = fluid_point(env, batch, station, l).z;
-    }
-    for l in 0..LANES {
-        let (v, dz) = water.stream(z.0[l], &env.flow);
-        set_lane(&mut stream[0], l, v);
-        set_lane(&mut stream[1], l, dz);
-    }
-    for l in 0..LANES {
-        re.0[l] = water.reynolds::<CROSS_FLOW>(&fluid_point(env, batch, station, l), &stream_lane(&stream, l));
-    }
-    for l in 0..LANES {
-        set_lane(&mut cd, l, water.coefficient(re.0[l]).into());
-    }
-    for l in 0..LANES {
-        let x = fluid_point(env, batch, station, l);
-        let load = water.load_in::<TANGENT, CROSS_FLOW>(&x, &stream_lane(&stream, l), lane(&cd, l).into(), &env.flow);
-        let wl = weight * batch.length.0[l] * batch.wet.0[l];
-        let (w2, wp, p2) = (dot(&x.w, &x.w), dot(&x.w, &x.p), dot(&x.p, &x.p));
-        batch.turning.0[l] += wl * load.turning;
-        batch.kinetic.0[l] += wl * (w2 - wp * wp / p2) * (0.5 * water.added_mass);
-        for c in 0..3 {
-            let f = wl * load.f[c];
-            for i in 0..4 {
-                batch.f[i][c].0[l] += s[i] * f;
-            }
-        }
-        if TANGENT {
-            let flat = |s: f64, m: &[[f64; 3]; 3]| -> [f64; 9] { std::array::from_fn(|k| s * m[k / 3][k % 3]) };
-            set_lane(&mut slopes.dz, l, scale(wl, &load.dz));
-            set_lane(&mut slopes.dv, l, flat(wl, &load.dv));
-            set_lane(&mut slopes.dp, l, flat(wl * batch.inverse.0[l], &load.dp));
-            set_lane(&mut slopes.mass, l, flat(wl, &load.mass));
-        }
-    }
-}
-
-/// K of elements side by side.
-#[inline(always)]
-fn stiffness(stations: &[Station; 3], slopes: &[Slopes; 3], wet: bool, to: &Place, out: &mut BlockTridiagonal) {
-    let by_p = moments(stations, |x| (x.s, [x.b[0], -x.b[1], -x.b[0], -x.b[2]]));
-    let by_z = moments(stations, |x| (x.s, x.s.map(|s| -s)));
-    let mut t = [[Row::ZERO; 4]; 4];
-    for r in 0..3 {
-        for c in 0..3 {
-            let rc = 3 * r + c;
-            let mut on = [[Row::ZERO; SPANS]; SPANS];
-            for (station, at) in stations.iter().zip(slopes) {
-                let Station { b, d, .. } = station;
-                for l in 0..LANES {
-                    let (pp, pq, qp, qq) = (at.k_pp[rc].0[l], at.k_pq[rc].0[l], at.k_qp[rc].0[l], at.k_qq[rc].0[l]);
-                    for j in 0..SPANS {
-                        let (n, m) = (pp * b[j] + pq * d[j], qp * b[j] + qq * d[j]);
-                        for i in 0..SPANS {
-                            on[i][j].0[l] += b[i] * n + d[i] * m;
-                        }
-                    }
-                }
-            }
-            spread(&on, &mut t);
-            if wet {
-                add_moments(&by_p, [&slopes[0].dp[rc], &slopes[1].dp[rc], &slopes[2].dp[rc]], &mut t);
-                if c == 2 {
-                    add_moments(&by_z, [&slopes[0].dz[r], &slopes[1].dz[r], &slopes[2].dz[r]], &mut t);
-                }
-            }
-            to.scatter(&mut t, r, c, out);
-        }
-    }
-}
-
-/// For each pair of slots a number for each Gauss point.
-type Moments = [[[f64; 3]; 4]; 4];
-
-/// a_i b_j at each Gauss point.
-#[inline(always)]
-fn moments(stations: &[Station; 3], of: impl Fn(&Station) -> ([f64; 4], [f64; 4])) -> Moments {
-    let mut out = [[[0.0; 3]; 4]; 4];
-    for (g, station) in stations.iter().enumerate() {
-        let (a, b) = of(station);
-        for i in 0..4 {
-            for j in 0..4 {
-                out[i][j][g] = a[i] * b[j];
-            }
-        }
-    }
-    out
-}
-
-/// t_ij += Σ_g m_ijg x_g.
-#[inline(always)]
-fn add_moments(m: &Moments, x: [&Row; 3], t: &mut [[Row; 4]; 4]) {
-    for l in 0..LANES {
-        let (x0, x1, x2) = (x[0].0[l], x[1].0[l], x[2].0[l]);
-        for i in 0..4 {
-            for j in 0..4 {
-                t[i][j].0[l] += m[i][j][0] * x0 + m[i][j][1] * x1 + m[i][j][2] * x2;
-            }
-        }
-    }
-}
-
-/// From spans to slots.
-#[inline(always)]
-fn spread(on: &[[Row; SPANS]; SPANS], t: &mut [[Row; 4]; 4]) {
-    // Slot 2 is slot 0 with the other sign.
-    const OF: [(usize, f64); 4] = [(0, -1.0), (1, 1.0), (0, 1.0), (2, 1.0)];
-    for (i, (k, x)) in OF.into_iter().enumerate() {
-        for (j, (m, y)) in OF.into_iter().enumerate() {
-            for l in 0..LANES {
-                t[i][j].0[l] = x * y * on[k][m].0[l];
-            }
-        }
-    }
-}
-
-/// Which elements lie side by side.
-struct Place<'a> {
-    first: usize,
-    lanes: usize,
-    length: &'a Row,
-}
-
-impl Place<'_> {
-    /// Adds entry (r, c) of each pair of slots, given for unit length, to the matrix.
-    #[inline(always)]
-    fn scatter(&self, t: &mut [[Row; 4]; 4], r: usize, c: usize, m: &mut BlockTridiagonal) {
-        for l in 0..LANES {
-            let length = self.length.0[l];
-            for i in 0..2 {
-                for j in 0..2 {
-                    t[2 * i + 1][2 * j].0[l] *= length;
-                    t[2 * i][2 * j + 1].0[l] *= length;
-                    t[2 * i + 1][2 * j + 1].0[l] *= length * length;
-                }
-            }
-        }
-        for l in 0..self.lanes {
-            let e = self.first + l;
-            for i in 0..2 {
-                for j in 0..2 {
-                    m.diagonal[e][3 * i + r][3 * j + c] += t[i][j].0[l];
-                    m.upper[e][3 * i + r][3 * j + c] += t[i][j + 2].0[l];
-                    m.lower[e + 1][3 * i + r][3 * j + c] += t[i + 2][j].0[l];
-                    m.diagonal[e + 1][3 * i + r][3 * j + c] += t[i + 2][j + 2].0[l];
-                }
-            }
-        }
-    }
-}
-
-/// Lane `l` of what r_p depends on.
-#[inline(always)]
-fn spans(q: &[Rows3; 4], l: usize) -> [Vec3<f64>; SPANS] {
-    [std::array::from_fn(|c| q[2][c].0[l] - q[0][c].0[l]), lane(&q[1], l), lane(&q[3], l)]
-}
-
-/// f Σ b_i x_i.
-#[inline(always)]
-fn along(b: &[f64; SPANS], x: &[Vec3<f64>; SPANS], f: f64) -> Vec3<f64> {
-    std::array::from_fn(|c| f * (b[0] * x[0][c] + b[1] * x[1][c] + b[2] * x[2][c]))
 }

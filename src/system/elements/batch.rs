@@ -1,0 +1,125 @@
+//! Elements side by side, as elements of unit length, and their Gauss points.
+
+use super::gather;
+use crate::cable::shape;
+use crate::math::lanes::{Lanes, Vec3, lane};
+
+/// Elements side by side.
+pub const LANES: usize = 8;
+/// A number of each.
+pub type Row = Lanes<LANES>;
+/// A vector of each.
+pub type Rows3 = [Row; 3];
+/// A 3×3 matrix of each, row major.
+pub type Rows33 = [Row; 9];
+
+/// Puts the slots of element `e`, of unit length then, into lane `l`.
+#[inline(always)]
+pub fn gather_lane(x: &[f64], e: usize, length: f64, l: usize, to: &mut [Rows3; 4]) {
+    let q = gather(x, e);
+    for c in 0..3 {
+        to[0][c].0[l] = q[0][c];
+        to[1][c].0[l] = q[1][c] * length;
+        to[2][c].0[l] = q[2][c];
+        to[3][c].0[l] = q[3][c] * length;
+    }
+}
+
+/// Slots and differences of slots that r_p depends on: r(L) − r(0), L r_p(0), L r_p(L).
+pub const SPANS: usize = 3;
+
+/// A Gauss point of the element of unit length, on whose slots (r(0), L r_p(0), r(L), L r_p(L)) the shape functions are pure numbers.
+#[derive(Clone, Copy)]
+pub struct Station {
+    /// Of the quadrature on [0, 1].
+    pub weight: f64,
+    /// s.
+    pub s: [f64; 4],
+    /// ds/dξ by span.
+    pub b: [f64; SPANS],
+    /// d²s/dξ² by span.
+    pub d: [f64; SPANS],
+}
+
+impl Station {
+    #[inline(always)]
+    pub fn new((x, weight): (f64, f64)) -> Self {
+        let ([_, b1, ba, b3], [_, d1, da, d3]) = (shape::slope(x, 1.0), shape::second(x, 1.0));
+        Self { weight, s: shape::value(x, 1.0), b: [ba, b1, b3], d: [da, d1, d3] }
+    }
+}
+
+/// Elements side by side as elements of unit length.
+#[derive(Default)]
+pub struct Batch {
+    /// True length, m, and its inverse.
+    pub length: Row,
+    pub inverse: Row,
+    /// 1 where all under water.
+    pub wet: Row,
+    /// Slots of u, w, a.
+    pub u: [Rows3; 4],
+    pub w: [Rows3; 4],
+    pub a: [Rows3; 4],
+    /// Forces on the slots.
+    pub f: [Rows3; 4],
+    /// See `Tally`.
+    pub elastic: Row,
+    pub power: Row,
+    pub kinetic: Row,
+    pub turning: Row,
+}
+
+/// What the tangent needs of a Gauss point, of elements side by side.
+#[derive(Clone, Copy)]
+pub struct Slopes {
+    /// Weighted derivatives of the resistance by ξ-derivatives.
+    pub k_pp: Rows33,
+    pub k_pq: Rows33,
+    pub k_qp: Rows33,
+    pub k_qq: Rows33,
+    /// Weighted dampings and their dyads' vectors, see `Resistance`.
+    pub c_axial: Row,
+    pub g: Rows3,
+    pub c_bending: Row,
+    pub e: [Rows3; SPANS],
+    /// Weighted derivatives of the fluid force.
+    pub dz: Rows3,
+    pub dv: Rows33,
+    pub dp: Rows33,
+    pub mass: Rows33,
+}
+
+pub const NONE: Rows33 = [Row::ZERO; 9];
+pub const STILL: Slopes = Slopes {
+    k_pp: NONE,
+    k_pq: NONE,
+    k_qp: NONE,
+    k_qq: NONE,
+    c_axial: Row::ZERO,
+    g: [Row::ZERO; 3],
+    c_bending: Row::ZERO,
+    e: [[Row::ZERO; 3]; SPANS],
+    dz: [Row::ZERO; 3],
+    dv: NONE,
+    dp: NONE,
+    mass: NONE,
+};
+
+/// Lane `l` of Σ s_i q_i.
+#[inline(always)]
+pub fn value(s: &[f64; 4], q: &[Rows3; 4], l: usize) -> Vec3<f64> {
+    std::array::from_fn(|c| s[0] * q[0][c].0[l] + s[1] * q[1][c].0[l] + s[2] * q[2][c].0[l] + s[3] * q[3][c].0[l])
+}
+
+/// Lane `l` of what r_p depends on.
+#[inline(always)]
+pub fn spans(q: &[Rows3; 4], l: usize) -> [Vec3<f64>; SPANS] {
+    [std::array::from_fn(|c| q[2][c].0[l] - q[0][c].0[l]), lane(&q[1], l), lane(&q[3], l)]
+}
+
+/// f Σ b_i x_i.
+#[inline(always)]
+pub fn along(b: &[f64; SPANS], x: &[Vec3<f64>; SPANS], f: f64) -> Vec3<f64> {
+    std::array::from_fn(|c| f * (b[0] * x[0][c] + b[1] * x[1][c] + b[2] * x[2][c]))
+}
