@@ -57,7 +57,8 @@ impl Turbulence {
     pub fn at(&self, t: f64) -> [Vec3<f64>; 2] {
         let k = (t * self.rate).floor();
         let tau = t - k / self.rate;
-        let near: [Vec3<f64>; 6] = std::array::from_fn(|j| self.sample(k as i64 + j as i64 - 2));
+        // Wrapping: only a time that nobody means, of a forged state or an absurd start, comes near the last number.
+        let near: [Vec3<f64>; 6] = std::array::from_fn(|j| self.sample((k as i64).wrapping_add(j as i64 - 2)));
         let growth = self.growth(t);
         let jets: [Jet; 3] = std::array::from_fn(|c| {
             let ends = [2, 3].map(|j| derivatives(std::array::from_fn(|i| near[j + i - 2][c]), self.rate));
@@ -84,7 +85,7 @@ impl Turbulence {
         coloured.get(k, || {
             let mut sum = [0.0; 3];
             for (j, h) in self.response.iter().enumerate() {
-                let k = k - j as i64;
+                let k = k.wrapping_sub(j as i64);
                 let w = white.get(k, || white_noise(self.seed, k));
                 for c in 0..3 {
                     sum[c] += h * w[c];
