@@ -163,6 +163,44 @@ mod tests {
     }
 
     #[test]
+    fn exact_derivatives_at_a_sample_are_a_quartics() {
+        // y = x^n at x = −2 … 2: only y = x has a slope at 0 and only y = x² is bent there; at 10 samples a second lengths are tenths.
+        for (n, slope, bend) in [(0, 0.0, 0.0), (1, 1.0, 0.0), (2, 0.0, 2.0), (3, 0.0, 0.0), (4, 0.0, 0.0)] {
+            let y = [-2.0f64, -1.0, 0.0, 1.0, 2.0].map(|x| x.powi(n));
+            let [_, first, second] = derivatives(y, 10.0);
+            // Rounding of sums up to 32, times 100.
+            assert!((first - 10.0 * slope).abs() < 1e-12 && (second - 100.0 * bend).abs() < 1e-12, "x^{n}: {first} {second}");
+        }
+    }
+
+    #[test]
+    fn exact_samples_are_filtered_white_noise_of_unit_power() {
+        let noise = Turbulence::new(&NOISE);
+        let power: f64 = noise.response.iter().map(|h| h * h).sum();
+        assert!((power - 1.0).abs() < 1e-13, "{power}"); // rounding of some hundred squares
+        for k in [-40, 0, 12345] {
+            let v = noise.sample(k);
+            for c in 0..3 {
+                let sum: f64 = noise.response.iter().enumerate().map(|(j, h)| h * white_noise(NOISE.seed.into(), k - j as i64)[c]).sum();
+                assert!((v[c] - NOISE.std_dev[c] * sum).abs() < 1e-15, "sample {k}: {v:?}"); // the same sum, of numbers near 1e-2
+            }
+        }
+        // From the cut-off on the filter stops: 80 dB, and what the cut end of the response leaves, √(1e-12 n) of H(0) ≥ 1.
+        let gain = |f: f64| {
+            let (mut re, mut im) = (0.0, 0.0);
+            for (j, h) in noise.response.iter().enumerate() {
+                let (sine, cosine) = (2.0 * PI * f / NOISE.sample_rate * j as f64).sin_cos();
+                (re, im) = (re + h * cosine, im + h * sine);
+            }
+            re.hypot(im)
+        };
+        for i in 0..=480 {
+            let f = NOISE.cutoff + 0.1 * f64::from(i);
+            assert!(gain(f) < 1.1e-4 * gain(0.0), "{f} Hz: {:e}", gain(f) / gain(0.0));
+        }
+    }
+
+    #[test]
     fn exact_deviations_are_those_asked_for() {
         let noise = Turbulence::new(&NOISE);
         // Samples 0.7 s apart are nearly independent (half the power lies below 1.07 Hz); a variance from n of them has a relative standard
