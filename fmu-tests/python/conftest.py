@@ -3,6 +3,7 @@
 import os
 import shutil
 import subprocess
+from pathlib import Path
 
 import pytest
 import scenes
@@ -55,6 +56,25 @@ def fmus(xtask, tmp_path_factory):
 @pytest.fixture(scope="session")
 def flume(fmus):
     return fmus["flume"]
+
+
+@pytest.fixture(scope="session")
+def beside(xtask, tmp_path_factory):
+    """Folder with the FMU of a scene and all that `cargo xtask package --osp --ssp` writes beside it, made when first asked for."""
+    known = {}
+
+    def of(name):
+        if name not in known:
+            folder = tmp_path_factory.mktemp(f"beside-{name}")
+            done = xtask("package", name, "--osp", "--ssp", "--out", folder / f"{name}.fmu")
+            assert done.returncode == 0, done.stderr
+            expected = {f"{name}{end}" for end in (".fmu", ".ssv", ".ssp", "_OspModelDescription.xml", "_OspSystemStructure.xml")}
+            assert {path.name for path in folder.iterdir()} == expected
+            assert {Path(line).name for line in done.stdout.splitlines()} >= expected
+            known[name] = folder
+        return known[name]
+
+    return of
 
 
 @pytest.fixture

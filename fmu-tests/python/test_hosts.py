@@ -180,23 +180,6 @@ def test_exact_the_fmu_toolbox_does_look(flume, tmp_path):
 
 # The example systems that `cargo xtask package --osp --ssp` writes beside an FMU.
 
-
-@pytest.fixture(scope="module")
-def systems(xtask, tmp_path_factory):
-    """Folder with the FMU of a scene and all that goes beside it."""
-    known = {}
-
-    def of(name):
-        if name not in known:
-            folder = tmp_path_factory.mktemp(f"system-{name}")
-            done = xtask("package", name, "--osp", "--ssp", "--out", folder / f"{name}.fmu")
-            assert done.returncode == 0, done.stderr
-            known[name] = folder
-        return known[name]
-
-    return of
-
-
 # A winch takes its set-point as an angle with its rate, or in metres of cable.
 ANGLE = {"winch.angle": "winch.setpoint", "winch.rate": "winch.setpoint_rate"}
 PAYOUT = {"winch.payout": "winch.setpoint"}
@@ -222,8 +205,8 @@ def followed(fmu):
 
 @pytest.mark.parametrize("host, kind", [("cosim", "osp"), ("cosim", "ssp"), ("ecos", "ssp")])
 @pytest.mark.parametrize("name", scenes.BUILT_IN)
-def test_cross_the_example_systems_run(fmus, systems, tmp_path, name, host, kind):
-    fmu, folder = fmus[name], systems(name)
+def test_cross_the_example_systems_run(fmus, beside, tmp_path, name, host, kind):
+    fmu, folder = fmus[name], beside(name)
     path = folder / f"{name}.ssp"
     if kind == "osp":
         # The file says its own step size, and a hundredth of a second is no binary number.
@@ -236,9 +219,9 @@ def test_cross_the_example_systems_run(fmus, systems, tmp_path, name, host, kind
     same(found, followed(fmu))
 
 
-def test_cross_libcosim_connects_whole_groups(flume, systems, tmp_path):
+def test_cross_libcosim_connects_whole_groups(flume, beside, tmp_path):
     """It reads the groups from flume_OspModelDescription.xml."""
-    folder = systems("flume")
+    folder = beside("flume")
     text = (folder / "flume_OspSystemStructure.xml").read_text(encoding="utf-8").replace("0.01", str(STEP))
     path = folder / "flume_Groups_OspSystemStructure.xml"
     path.write_text(text.replace("VariableConnection", "VariableGroupConnection").replace("<Variable ", "<VariableGroup "), encoding="utf-8")
@@ -247,9 +230,9 @@ def test_cross_libcosim_connects_whole_groups(flume, systems, tmp_path):
 
 
 @pytest.mark.parametrize("host", EXTERNAL)
-def test_cross_a_parameter_set_is_applied(flume, systems, tmp_path, host):
+def test_cross_a_parameter_set_is_applied(flume, beside, tmp_path, host):
     """libcosim and Ecos take a changed number from the .ssv; each cable of the system is bound to it."""
-    folder = systems("flume")
+    folder = beside("flume")
     changed = tmp_path / "changed.ssp"
     with zipfile.ZipFile(folder / "flume.ssp") as source, zipfile.ZipFile(changed, "w") as target:
         for name in source.namelist():

@@ -87,25 +87,6 @@ def test_exact_the_manual_has_every_variable_and_no_dead_link(fmus, name):
         assert said in text, said
 
 
-@pytest.fixture(scope="module")
-def beside(xtask, tmp_path_factory):
-    """Folder with the FMU of a scene and what goes beside it."""
-    known = {}
-
-    def of(name):
-        if name not in known:
-            folder = tmp_path_factory.mktemp(f"beside-{name}")
-            done = xtask("package", name, "--osp", "--ssp", "--out", folder / f"{name}.fmu")
-            assert done.returncode == 0, done.stderr
-            expected = {f"{name}{end}" for end in (".fmu", ".ssv", ".ssp", "_OspModelDescription.xml", "_OspSystemStructure.xml")}
-            assert {path.name for path in folder.iterdir()} == expected
-            assert {Path(line).name for line in done.stdout.splitlines()} >= expected
-            known[name] = folder
-        return known[name]
-
-    return of
-
-
 @pytest.mark.parametrize("name", scenes.BUILT_IN)
 def test_exact_every_signal_is_in_one_osp_group(fmus, beside, name):
     """Numeric or not; ports pair a force with a velocity, one in and one out. What libcosim makes of it is in test_hosts.py."""

@@ -2,17 +2,15 @@
 
 mod bench;
 
-use bench::{HEAVY_WIRE, NYLON, Row, Wire, at_rest, frequencies, heaving, pull, relative_rms, rms, root, run, shape_csv, started, table};
+use bench::swing::Crossings;
+use bench::{
+    ANCHOR, HEAVY_WIRE, NYLON, Row, Wire, at_rest, elliptic_k, frequencies, heaving, pull, relative_rms, rms, root, run, shape_csv,
+    started, still, table,
+};
 use fairlead::outputs::Outputs;
 use fairlead::sim::Inputs;
 use fairlead::system::{FirstEnd, System};
 use std::f64::consts::{FRAC_PI_2, PI};
-
-const ANCHOR: &str = "[anchor]\nposition = [0, 0, 0]\n";
-
-fn still(_: f64) -> Inputs {
-    Inputs::default()
-}
 
 /// What cubic elements add to the frequency of a wave that advances by `phase` per element, measured at 1.4e-5 to 1.9e-5 phase⁶ below,
 /// with a third more.
@@ -98,15 +96,6 @@ fn exact_frequencies_of_a_cantilever() {
     }
 }
 
-/// K(k) by the arithmetic-geometric mean.
-fn elliptic_k(k: f64) -> f64 {
-    let (mut a, mut b) = (1.0, (1.0 - k * k).sqrt());
-    for _ in 0..20 {
-        (a, b) = (0.5 * (a + b), f64::sqrt(a * b));
-    }
-    FRAC_PI_2 / a
-}
-
 #[test]
 fn exact_large_pendulum_keeps_its_period_and_its_energy() {
     // Light and stiff beside the body's weight: the cable adds −m_l L/(12 m) = 2e-6 to the period, its stretch about 5e-6.
@@ -121,23 +110,12 @@ fn exact_large_pendulum_keeps_its_period_and_its_energy() {
         0.5 * mass * o.body.velocity.norm_squared() + mass * g * o.body.position.z + stretch
     };
     let start = energy(sim.outputs());
-    let (mut before, mut crossings, mut worst) = ((0.0, 1.0, 0.0), vec![], 0.0f64);
+    let (mut crossings, mut worst) = (Crossings::default(), 0.0f64);
     run(&mut sim, 0.01, 12.0, still, |t, o| {
-        let now = (t, o.body.position.x, o.body.velocity.x);
-        if before.1 * now.1 < 0.0 {
-            // Root of the cubic through both ends.
-            let (h, a, b) = (now.0 - before.0, before, now);
-            let cubic = |x: f64| {
-                let y = 1.0 - x;
-                y * y * ((1.0 + 2.0 * x) * a.1 + x * h * a.2) + x * x * ((1.0 + 2.0 * y) * b.1 - y * h * b.2)
-            };
-            crossings.push(a.0 + h * root(cubic, 0.0, 1.0));
-        }
-        before = now;
+        crossings.sample([t, o.body.position.x, o.body.velocity.x]);
         worst = worst.max((energy(o) - start).abs() / (mass * g * wire.length));
     });
-    let swings = crossings.len() - 1;
-    let period = 2.0 * (crossings[swings] - crossings[0]) / swings as f64;
+    let period = crossings.period();
     let exact = 4.0 * (wire.length / g).sqrt() * elliptic_k((0.5 * angle).sin());
     println!(
         "pendulum from 80 deg: period {period:.6} s, closed form {exact:.6} s ({:.1e}); energy within {worst:.1e} of m g L; reported energy error {:.1e}",

@@ -2,7 +2,7 @@
 
 mod bench;
 
-use bench::{Row, Wire, at_rest, relative_rms, rms, run, shape_csv, started, table};
+use bench::{Wire, at_rest, pulley_pendulum, relative_rms, rms, run, shape_csv, started, table};
 use fairlead::integrator::Problem;
 use fairlead::outputs::SheaveOutputs;
 use fairlead::scene::Scene;
@@ -313,28 +313,8 @@ fn exact_impossible_starts_name_the_sheave_and_the_numbers() {
 
 #[test]
 fn cross_pendulum_over_a_pulley_of_p1() {
-    let rope = Wire { length: 0.44, diameter: 0.00884, mass_per_length: 0.059, ea: 1.2276e5, ei: 8e-5, laws: "damping.axial = 20.0" };
-    let (contact, stiffness, mass, wrap) = (0.05062f64, 1e8, 9.43, 34.9f64.to_radians());
-    // At rest, uniformly stretched, on a circle that the first tension presses in.
-    let tension = mass * 9.81 * wrap.sin();
-    let (radius, stretch) = (contact - tension / (contact * stiffness), 1.0 + tension / rope.ea);
-    let rows: Vec<Row> = (0..=880)
-        .map(|i| {
-            let s = rope.length * f64::from(i) / 880.0;
-            let along = s * stretch;
-            let angle = (along / radius).min(wrap);
-            let free = along - radius * angle;
-            let (sine, cosine) = angle.sin_cos();
-            let (x, z) = (radius * sine + free * cosine, radius * cosine - free * sine);
-            (s, [x, 0.0, z], [stretch * cosine, 0.0, -stretch * sine], [0.0; 3])
-        })
-        .collect();
-    let rest = format!(
-        "[anchor]\nposition = [0, 0, {contact}]\n[[sheave]]\nposition = [0, 0, 0]\naxis = [0, 1, 0]\nradius = {}\nstiffness = {stiffness:?}\n\
-         exponent = 1.0\n[load]\nmass = {mass}\nlength_inertia = 0.269\nlength_gravity = 0.258\n[initial]\nstate = \"shape\"\nfile = \"p1.csv\"\n\
-         [solver]\ntolerance = 1e-5\n[outputs]\npoints = 81\n",
-        contact - 0.5 * rope.diameter
-    );
+    let (rope, rest, rows) = pulley_pendulum();
+    let rest = rest + "[initial]\nstate = \"shape\"\nfile = \"p1.csv\"\n[outputs]\npoints = 81\n";
     let reference = table(include_str!("../references/p1.csv"));
     let mut errors = vec![];
     for elements in [20, 40] {

@@ -2,7 +2,7 @@
 
 mod bench;
 
-use bench::{NYLON, Wire, at_rest, pull, root, run, settled, started, table, tip};
+use bench::{NYLON, Wire, at_rest, catenary, pull, root, run, settled, started, table, tip};
 use fairlead::sim::{Channel, Inputs};
 use fairlead::system::{FirstEnd, System};
 use nalgebra::Vector3;
@@ -36,16 +36,6 @@ fn cross_elastica_of_p2() {
         println!("elastica, {elements} elements: tip error over length {stiff:.2e}; with the scene's own clamp {whole:.2e}");
         assert!(stiff < mesh && whole < scene_bound, "{elements}: {stiff:e} {whole:e}");
     }
-}
-
-/// Elastic catenary with a force `f` on its free end: r(s) = ∫ (T/‖T‖ + T/EA) ds, T(s) = f − w (L − s) k.
-fn catenary(wire: &Wire, f: Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
-    let (l, w, ea) = (wire.length, wire.mass_per_length * 9.81, wire.ea);
-    let h = f.xy().norm();
-    let first = f - Vector3::z() * w * l;
-    let reach = ((f.z / h).asinh() - (first.z / h).asinh()) / w + l / ea;
-    let z = (f.norm() - first.norm()) / w + (f.z * l - 0.5 * w * l * l) / ea;
-    (Vector3::new(f.x * reach, f.y * reach, z), first)
 }
 
 #[test]

@@ -332,8 +332,9 @@ mod tests {
 
     #[test]
     fn exact_points_side_by_side_feel_what_one_feels() {
-        let places = [[0.03, -0.31, 0.38], [0.06, -0.43, 0.413], [0.11, 0.33, 0.4], [0.0, 0.6, 0.0]];
-        let (s, v) = ([0, 1, 2].map(|c| places.map(|p| p[c])), [[0.4, -0.4, 9.0, 0.1]; 3]);
+        // The last but one leaves faster than 1/D, the last has no direction.
+        let places = [[0.03, -0.31, 0.38], [0.06, -0.43, 0.413], [0.11, 0.33, 0.4], [0.0, 0.6, 0.0], [0.03, 0.33, 0.36], [0.0; 3]];
+        let (s, v) = ([0, 1, 2].map(|c| places.map(|p| p[c])), [[0.4, -0.4, 9.0, 0.1, 9.0, 0.1]; 3]);
         for surface in surfaces() {
             for exponent in [1.0, 1.5, 2.2] {
                 let surface = Surface { law: Contact { exponent, ..surface.law }, ..surface.clone() };

@@ -144,4 +144,21 @@ mod tests {
             assert!((x[i] - oracle[(i, 0)]).abs() < 1e-12, "{i}: {} {}", x[i], oracle[(i, 0)]); // condition number about 10
         }
     }
+
+    #[test]
+    fn exact_a_singular_border_names_its_block_row() {
+        // x₀ + x₆ = 0 and x₀ + x₆ = 0 again, beside a unit matrix; with 2 x₀ in the second it can be solved.
+        for (row, singular) in [(1.0, true), (2.0, false)] {
+            let mut a = Bordered::zeros(2, &[6]);
+            (0..12).for_each(|i| a.core.add(i / 6, i / 6, i % 6, i % 6, 1.0));
+            a.border(0).0[0] = 1.0;
+            a.border(0).1[0] = row;
+            assert_eq!(a.factor().map_err(|e| e.row), if singular { Err(1) } else { Ok(()) });
+            if !singular {
+                let mut x = [3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 4.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+                a.solve(&mut x);
+                assert_eq!((x[0], x[6]), (1.0, 2.0)); // 1 + 2 = 3, 2 · 1 + 2 = 4
+            }
+        }
+    }
 }

@@ -192,7 +192,8 @@ impl Outputs {
         fn count(n: &mut u64, visit: &mut dyn FnMut(&mut f64)) {
             let mut x = *n as f64;
             visit(&mut x);
-            *n = x as u64;
+            // The largest count that a double holds exactly; only a forged state has more.
+            *n = (x as u64).min(1 << 53);
         }
         let w = &mut self.winch;
         for x in [&mut w.tension, &mut w.angle, &mut w.rate, &mut w.torque, &mut w.payout] {

@@ -1,5 +1,13 @@
 //! Scenes, reference tables and small numerics shared by the verification tests.
-#![allow(dead_code)] // every test binary uses its own part
+#![allow(dead_code, unused_imports)] // every test binary uses its own part
+
+pub mod load;
+mod numerics;
+pub mod swing;
+mod wire;
+
+pub use numerics::{elliptic_k, relative_rms, rms, root, table};
+pub use wire::{G, NYLON, Row, Wire, catenary, pulley_pendulum, shape_csv};
 
 use fairlead::equilibrium;
 use fairlead::outputs::Outputs;
@@ -10,36 +18,17 @@ use fairlead::system::{Matrices, Ramp, System};
 use nalgebra::{DMatrix, Vector3};
 use std::f64::consts::PI;
 
-/// A cable and its mesh; the rest of a scene is written as TOML.
-#[derive(Clone, Copy, Debug)]
-pub struct Wire {
-    pub length: f64,
-    pub diameter: f64,
-    pub mass_per_length: f64,
-    pub ea: f64,
-    pub ei: f64,
-    /// Further lines of the table [cable].
-    pub laws: &'static str,
-}
-
-/// The flume's nylon, as in P2, P3 and P5 of the comparison with other programs.
-pub const NYLON: Wire = Wire { length: 1.0, diameter: 4.5e-4, mass_per_length: 2e-4, ea: 222.0, ei: 2.82e-6, laws: "" };
+/// An anchor at the origin.
+pub const ANCHOR: &str = "[anchor]\nposition = [0, 0, 0]\n";
 
 /// P4's wire.
 pub const HEAVY_WIRE: Wire =
     Wire { length: 200.0, diameter: 0.02, mass_per_length: 1.0, ea: 1e7, ei: 20.0, laws: "compression = \"none\"\ndamping.axial = 4e4" };
 
-/// A start shape: (s, position, tangent, velocity).
-pub type Row = (f64, [f64; 3], [f64; 3], [f64; 3]);
-
 impl Wire {
     /// The scene with `rest` (further tables) and an equal mesh; `gravity` in m/s².
     pub fn scene_at(&self, gravity: f64, elements: usize, rest: &str, shape: Option<&str>) -> Scene {
-        let Self { length, diameter, mass_per_length, ea, ei, laws } = self;
-        let text = format!(
-            "name = \"bench\"\ngravity = {gravity:?}\n[cable]\nlength = {length:?}\ndiameter = {diameter:?}\n\
-             mass_per_length = {mass_per_length:?}\nEA = {ea:?}\nEI = {ei:?}\n{laws}\n[mesh]\nelements = {elements}\n{rest}\n"
-        );
+        let text = self.text(gravity, elements, rest);
         match SceneFile::parse(&text, "bench.toml").and_then(|f| f.check(shape)) {
             Ok(scene) => scene,
             Err(e) => panic!("{e}\nin\n{text}"),
@@ -48,18 +37,8 @@ impl Wire {
 
     /// On earth.
     pub fn scene(&self, elements: usize, rest: &str) -> Scene {
-        self.scene_at(9.81, elements, rest, None)
+        self.scene_at(G, elements, rest, None)
     }
-}
-
-/// The text of a start shape.
-pub fn shape_csv(rows: &[Row]) -> String {
-    let mut text = String::from("s,x,y,z,tx,ty,tz,vx,vy,vz\n");
-    for (s, r, t, v) in rows {
-        let cells: Vec<String> = std::iter::once(s).chain(r).chain(t).chain(v).map(|x| format!("{x:?}")).collect();
-        text += &(cells.join(",") + "\n");
-    }
-    text
 }
 
 /// A simulation started under `inputs`.
@@ -78,6 +57,11 @@ pub fn run(sim: &mut Simulation, h: f64, end: f64, inputs: impl Fn(f64) -> Input
         sim.step_to(t, &inputs(h * i as f64)).expect("a completed step");
         observe(t, sim.outputs());
     }
+}
+
+/// Inputs that never change.
+pub fn still(_: f64) -> Inputs {
+    Inputs::default()
 }
 
 /// A value with its first two derivatives.
@@ -122,23 +106,6 @@ pub fn settled(system: &mut System, scene: &Scene, force: [f64; 3]) -> Vec<f64> 
     let mut u = equilibrium::lay_out(system, 0.0, &-Vector3::z()).expect("a shape");
     equilibrium::solve(system, 0.0, &mut u, load).expect("an equilibrium");
     u
-}
-
-/// Numbers of a CSV with a header line.
-pub fn table(text: &str) -> Vec<Vec<f64>> {
-    let rows = text.lines().filter(|l| !l.starts_with('#')).skip(1);
-    rows.map(|l| l.split(',').map(|x| x.parse().expect("a number")).collect()).collect()
-}
-
-/// √(Σ (a − b)² / Σ b²).
-pub fn relative_rms(pairs: &[(f64, f64)]) -> f64 {
-    let (d, s) = pairs.iter().fold((0.0, 0.0), |(d, s), (a, b)| (d + (a - b).powi(2), s + b * b));
-    (d / s).sqrt()
-}
-
-/// √(mean (a − b)²).
-pub fn rms(pairs: &[(f64, f64)]) -> f64 {
-    (pairs.iter().map(|(a, b)| (a - b).powi(2)).sum::<f64>() / pairs.len() as f64).sqrt()
 }
 
 /// Position of the last node.
@@ -190,12 +157,7 @@ pub fn frequencies(system: &mut System, u: &[f64], axis: usize, held_end: bool) 
     w
 }
 
-/// Root of a function that changes sign between `a` and `b`.
-pub fn root(f: impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
-    let fa = f(a);
-    for _ in 0..200 {
-        let c = 0.5 * (a + b);
-        if f(c) * fa > 0.0 { a = c } else { b = c }
-    }
-    0.5 * (a + b)
+/// Unknowns moved by up to `size` in a manner that follows from `seed` alone; the first node's position stays.
+pub fn ruffled(u: &[f64], seed: f64, size: f64) -> Vec<f64> {
+    u.iter().enumerate().map(|(i, x)| if i < 3 { *x } else { x + size * (seed + 1.7 * i as f64).sin() }).collect()
 }

@@ -136,13 +136,7 @@ impl Chart {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plots::{PALETTE, Panel};
-
-    fn wave() -> (Vec<f64>, Vec<f64>) {
-        let x: Vec<f64> = (0..6001).map(|i| 0.01 * i as f64).collect();
-        let y = x.iter().map(|t| (1.3 * t).sin()).collect();
-        (x, y)
-    }
+    use crate::plots::{PALETTE, Panel, wave};
 
     #[test]
     fn exact_gaps_and_odd_data_draw_something() {

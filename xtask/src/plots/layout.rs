@@ -150,12 +150,7 @@ pub(super) fn dashes(path: &[(f64, f64)], on: f64, off: f64) -> Vec<Vec<(f64, f6
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn wave() -> (Vec<f64>, Vec<f64>) {
-        let x: Vec<f64> = (0..6001).map(|i| 0.01 * i as f64).collect();
-        let y = x.iter().map(|t| (1.3 * t).sin()).collect();
-        (x, y)
-    }
+    use crate::plots::wave;
 
     #[test]
     fn exact_round_ticks() {

@@ -162,3 +162,11 @@ impl Chart {
         Chart { title: title.to_owned(), x_label: x_label.to_owned(), panels, equal_aspect: false, width: 880.0 }
     }
 }
+
+/// Sixty seconds of a wave, for the tests.
+#[cfg(test)]
+fn wave() -> (Vec<f64>, Vec<f64>) {
+    let x: Vec<f64> = (0..6001).map(|i| 0.01 * i as f64).collect();
+    let y = x.iter().map(|t| (1.3 * t).sin()).collect();
+    (x, y)
+}

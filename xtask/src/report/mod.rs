@@ -17,9 +17,13 @@ mod pulley;
 mod row;
 mod scene;
 mod section;
+#[path = "../../../fmu-tests/rust/bench/numerics.rs"]
+mod shared_numerics;
 mod sheaves;
 mod statics;
 mod tangent;
+#[path = "../../../fmu-tests/rust/bench/wire.rs"]
+mod wire;
 
 use crate::error::{Failure, Result};
 use crate::package::root;

@@ -1,17 +1,8 @@
-//! The report's own small numerics: searches, rms, logarithmic decrement, periods, the ellipsoid of a cloud of points.
+//! The report's small numerics: those it shares with the Rust tests, searches, logarithmic decrement, periods, the ellipsoid of a cloud of points.
 
+pub use super::shared_numerics::{elliptic_k, relative_rms, rms, root, table};
 use nalgebra::{Matrix3, Vector3};
-use std::f64::consts::{FRAC_PI_2, PI};
-
-/// Root of a function that changes sign between `a` and `b`, to rounding, by bisection.
-pub fn root(f: impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
-    let fa = f(a);
-    for _ in 0..200 {
-        let c = 0.5 * (a + b);
-        if f(c) * fa > 0.0 { a = c } else { b = c }
-    }
-    0.5 * (a + b)
-}
+use std::f64::consts::PI;
 
 /// The place of the least value of a function with one valley in [a, b], to `width`, and every place tried with its value, by golden-section
 /// search (J. Kiefer, Proc. Amer. Math. Soc. 4 (1953) 502-506).
@@ -46,25 +37,14 @@ pub fn golden_section<E>(
     Ok((0.5 * (a + b), tried))
 }
 
-/// √(mean (a − b)²).
-pub fn rms(a: &[f64], b: &[f64]) -> f64 {
-    (a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / a.len().min(b.len()) as f64).sqrt()
-}
-
-/// √(Σ (a − b)² / Σ b²).
-pub fn relative_rms(a: &[f64], b: &[f64]) -> f64 {
-    let (d, s) = a.iter().zip(b).fold((0.0, 0.0), |(d, s), (a, b)| (d + (a - b).powi(2), s + b * b));
-    (d / s).sqrt()
+/// Two columns as pairs, as far as both go.
+pub fn pairs(a: &[f64], b: &[f64]) -> Vec<(f64, f64)> {
+    a.iter().copied().zip(b.iter().copied()).collect()
 }
 
 /// Least and greatest value.
 pub fn extremes(values: &[f64]) -> [f64; 2] {
     values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(*v), high.max(*v)])
-}
-
-/// Numbers of a CSV with a header line.
-pub fn table(text: &str) -> Vec<Vec<f64>> {
-    text.lines().skip(1).map(|l| l.split(',').map(|x| x.trim().parse().unwrap_or(f64::NAN)).collect()).collect()
 }
 
 /// Damping ratio from the decay of a swing about zero: the logarithmic decrement over its maxima on the positive side, each found by the
@@ -94,15 +74,6 @@ pub fn period(times: &[f64], x: &[f64]) -> Option<f64> {
     }
     let swings = crossings.len().checked_sub(1).filter(|n| *n > 0)?;
     Some(2.0 * (crossings[swings] - crossings[0]) / swings as f64)
-}
-
-/// K(k), the complete elliptic integral of the first kind, by the arithmetic-geometric mean.
-pub fn elliptic_k(k: f64) -> f64 {
-    let (mut a, mut b) = (1.0, (1.0 - k * k).sqrt());
-    for _ in 0..20 {
-        (a, b) = (0.5 * (a + b), f64::sqrt(a * b));
-    }
-    FRAC_PI_2 / a
 }
 
 /// J₀ and J₁ by their series, good to rounding for arguments up to about 12.

@@ -2,10 +2,11 @@
 
 use super::bench::{Bench, Drive, Record, point, record, side_by_side};
 use super::must_hold::Must;
-use super::numerics::{extremes, relative_rms, rms, table};
+use super::numerics::{extremes, pairs, relative_rms, rms, table};
 use super::row::{Row, Truth::Cross, figure, share};
 use super::scene::{G, NYLON, Row as ShapeRow, Scene, Wire};
 use super::section::{Section, thinned};
+use super::wire::pulley_pendulum;
 use crate::error::Result;
 use crate::host::Fmu;
 use crate::plots::{Chart, INK, PALETTE, Panel, Series};
@@ -96,27 +97,7 @@ fn over(label: &str, x: &[f64], ours: &[f64], reference: &[f64]) -> Panel {
 }
 
 fn p1_scene(elements: usize) -> Result<Scene> {
-    let rope = Wire { length: 0.44, diameter: 0.00884, mass_per_length: 0.059, ea: 1.2276e5, ei: 8e-5, laws: "damping.axial = 20.0" };
-    let (contact, stiffness, mass, wrap) = (0.05062f64, 1e8, 9.43, 34.9f64.to_radians());
-    // At rest, uniformly stretched, on a circle that the first tension presses in.
-    let tension = mass * G * wrap.sin();
-    let (radius, stretch) = (contact - tension / (contact * stiffness), 1.0 + tension / rope.ea);
-    let rows: Vec<ShapeRow> = (0..=880)
-        .map(|i| {
-            let s = rope.length * f64::from(i) / 880.0;
-            let along = s * stretch;
-            let angle = (along / radius).min(wrap);
-            let free = along - radius * angle;
-            let (sine, cosine) = angle.sin_cos();
-            let place = [radius * sine + free * cosine, 0.0, radius * cosine - free * sine];
-            (s, place, [stretch * cosine, 0.0, -stretch * sine], [0.0; 3])
-        })
-        .collect();
-    let rest = format!(
-        "[anchor]\nposition = [0, 0, {contact}]\n[[sheave]]\nposition = [0, 0, 0]\naxis = [0, 1, 0]\nradius = {}\nstiffness = {stiffness:?}\n\
-         exponent = 1.0\n[load]\nmass = {mass}\nlength_inertia = 0.269\nlength_gravity = 0.258\n[solver]\ntolerance = 1e-5\n",
-        contact - 0.5 * rope.diameter
-    );
+    let (rope, rest, rows) = pulley_pendulum();
     Ok(rope.scene(G, elements, 81, &rest)?.start_shape(&rows))
 }
 
@@ -131,7 +112,7 @@ fn p1(bench: &Bench) -> Result<Comparison> {
         // Direction of the chord from the material point s = L/2 to the attachment.
         let [x0, z0, x1, z1, t] = &run.columns;
         let angle: Vec<f64> = (0..x0.len()).map(|i| (z0[i] - z1[i]).atan2(x1[i] - x0[i]).to_degrees()).collect();
-        let (off, pull) = (rms(&angle[1..], &wrap[1..]).to_radians(), relative_rms(&t[1..], &tension[1..]));
+        let (off, pull) = (rms(&pairs(&angle[1..], &wrap[1..])).to_radians(), relative_rms(&pairs(&t[1..], &tension[1..])));
         lines.push(line("fairlead", &format!("{elements}, tolerance 1e-5"), &format!("{off:.1e}"), &share(pull)));
         if elements == 40 {
             rows.push(
@@ -175,8 +156,8 @@ fn p3(bench: &Bench) -> Result<Comparison> {
     let (mut rows, mut lines, mut chart) = (Vec::new(), Vec::new(), None);
     for ((elements, tolerance, near, pull), run) in cases.into_iter().zip(runs) {
         let run = run?;
-        let far = rms(&run.columns[0][1..], &x[1..]).hypot(rms(&run.columns[1][1..], &z[1..]));
-        let off = relative_rms(&run.columns[2][1..], &tension[1..]);
+        let far = rms(&pairs(&run.columns[0][1..], &x[1..])).hypot(rms(&pairs(&run.columns[1][1..], &z[1..])));
+        let off = relative_rms(&pairs(&run.columns[2][1..], &tension[1..]));
         lines.push(line("fairlead", &format!("{elements}, tolerance {tolerance:.0e}"), &format!("{far:.1e}"), &share(off)));
         rows.push(
             Row::error(Cross, format!("P3, {elements} elements: position rms over length"), far, "")
@@ -226,7 +207,7 @@ fn p4a(bench: &Bench) -> Result<Comparison> {
     let run = heaved(&fmu, 2.5, 6.0, 60.0)?;
     let (t, ours, tip) = (thinned(&run.times, 5), thinned(&run.columns[0], 5), thinned(&run.columns[1], 5));
     let (tension, z) = (column(&reference, 2), column(&reference, 1));
-    let (off, low) = (relative_rms(&ours[1..], &tension[1..]), rms(&tip[1..], &z[1..]));
+    let (off, low) = (relative_rms(&pairs(&ours[1..], &tension[1..])), rms(&pairs(&tip[1..], &z[1..])));
     let rows = vec![
         Row::error(Cross, "P4a, 5 elements, 10 ms: tension rms over the reference's", off, "")
             .within(2e-6)
@@ -255,7 +236,7 @@ fn p4b(bench: &Bench) -> Result<Comparison> {
     let (mut rows, mut lines) = (Vec::new(), Vec::new());
     for (elements, run) in meshes.into_iter().zip(&runs) {
         let peak = 1e-3 * extremes(&run.columns[0])[1];
-        let off = relative_rms(&run.columns[0], &runs[2].columns[0]);
+        let off = relative_rms(&pairs(&run.columns[0], &runs[2].columns[0]));
         rows.push(
             Row::relative(Cross, format!("P4b, {elements} elements: peak tension"), peak, 97.7, "kN")
                 .within(2.5e-3)

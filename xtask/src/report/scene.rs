@@ -1,5 +1,6 @@
 //! The scenes of the report: built-in ones with keys changed, and small ones written here.
 
+pub use super::wire::{G, NYLON, Row, Wire, shape_csv};
 use crate::error::{Failure, Result};
 use model_description::scenes::named;
 use toml::{Table, Value};
@@ -65,12 +66,7 @@ impl Scene {
 
     /// The scene with a start shape.
     pub fn start_shape(mut self, rows: &[Row]) -> Self {
-        let mut text = String::from("s,x,y,z,tx,ty,tz,vx,vy,vz\n");
-        for (s, r, t, v) in rows {
-            let cells: Vec<String> = std::iter::once(s).chain(r).chain(t).chain(v).map(|x| format!("{x:?}")).collect();
-            text += &(cells.join(",") + "\n");
-        }
-        self.shape = Some(text);
+        self.shape = Some(shape_csv(rows));
         self.with("initial", Table::from_iter([("state".into(), "shape".into()), ("file".into(), SHAPE.into())]))
     }
 
@@ -94,46 +90,15 @@ impl Scene {
     }
 }
 
-/// A row of a start shape: s, position, tangent, velocity; SI units.
-pub type Row = (f64, [f64; 3], [f64; 3], [f64; 3]);
-
-/// A cable; the rest of a scene is written as TOML. SI units.
-#[derive(Clone, Copy, Debug)]
-pub struct Wire {
-    /// Unstretched length.
-    pub length: f64,
-    /// Diameter.
-    pub diameter: f64,
-    /// Mass per unstretched length.
-    pub mass_per_length: f64,
-    /// Axial stiffness.
-    pub ea: f64,
-    /// Bending stiffness.
-    pub ei: f64,
-    /// Further lines of the table `[cable]`.
-    pub laws: &'static str,
-}
-
-/// The flume's nylon, as in P2, P3 and P5.
-pub const NYLON: Wire = Wire { length: 1.0, diameter: 4.5e-4, mass_per_length: 2e-4, ea: 222.0, ei: 2.82e-6, laws: "" };
-
 impl Wire {
     /// The scene with `rest`, the other tables' text, an equal mesh, this gravity and so many points of the cable as outputs.
     ///
     /// # Errors
     /// `rest` is no TOML.
     pub fn scene(&self, gravity: f64, elements: usize, points: usize, rest: &str) -> Result<Scene> {
-        let Self { length, diameter, mass_per_length, ea, ei, laws } = self;
-        Scene::parse(&format!(
-            "name = \"bench\"\ngravity = {gravity:?}\n[cable]\nlength = {length:?}\ndiameter = {diameter:?}\n\
-             mass_per_length = {mass_per_length:?}\nEA = {ea:?}\nEI = {ei:?}\n{laws}\n[mesh]\nelements = {elements}\n\
-             [outputs]\npoints = {points}\n{rest}\n"
-        ))
+        Scene::parse(&self.text(gravity, elements, &format!("[outputs]\npoints = {points}\n{rest}")))
     }
 }
-
-/// On earth, m/s².
-pub const G: f64 = 9.81;
 
 #[cfg(test)]
 mod tests {

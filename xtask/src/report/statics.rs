@@ -5,6 +5,7 @@ use super::numerics::{root, table};
 use super::row::{Row, Truth::Exact};
 use super::scene::{G, NYLON, Wire};
 use super::section::Section;
+use super::wire::catenary as catenary_form;
 use crate::error::Result;
 use crate::plots::{Chart, INK, PALETTE, Panel, Series};
 use nalgebra::Vector3;
@@ -75,16 +76,6 @@ fn elastica(bench: &Bench) -> Result<(Vec<Row>, Chart)> {
     ];
     let chart = Chart { equal_aspect: true, width: 640.0, ..Chart::new("Elastica", "x, mm", vec![Panel::new("z, mm", series)]) };
     Ok((rows, chart))
-}
-
-/// r(L) of an elastic catenary with a force on its free end, and the force on the first end: r = ∫ (T/‖T‖ + T/EA) ds, T = f − w (L − s) k.
-fn catenary_form(wire: &Wire, f: Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
-    let (l, w, ea) = (wire.length, wire.mass_per_length * G, wire.ea);
-    let h = f.xy().norm();
-    let first = f - Vector3::z() * w * l;
-    let reach = ((f.z / h).asinh() - (first.z / h).asinh()) / w + l / ea;
-    let z = (f.norm() - first.norm()) / w + (f.z * l - 0.5 * w * l * l) / ea;
-    (Vector3::new(f.x * reach, f.y * reach, z), first)
 }
 
 fn catenary(bench: &Bench) -> Result<Vec<Row>> {
