@@ -6,7 +6,8 @@
 #![allow(unsafe_code)]
 
 pub mod abi;
-pub mod exports;
+pub mod derivatives;
+mod exports;
 mod function;
 mod guard;
 mod instance;

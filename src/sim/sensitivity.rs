@@ -75,9 +75,8 @@ impl Simulation {
         };
         let mut sides = Sides { above: driven(half), below: driven(-half), width: 2.0 * half };
         let tangent = driven(0.0).tangent(end, &mut sides)?;
-        let mut at = |side: fn(&mut Sides) -> &mut Self, s: f64| {
-            side(&mut sides).outputs_beside(self, [&tangent.u, &tangent.w, &tangent.a], s, 0.0)
-        };
+        let mut at =
+            |side: fn(&mut Sides) -> &mut Self, s: f64| side(&mut sides).outputs_beside(self, [&tangent.u, &tangent.w, &tangent.a], s, 0.0);
         Ok(Slope { above: at(|s| &mut s.above, half), below: at(|s| &mut s.below, -half), width: 2.0 * half })
     }
 

@@ -7,6 +7,7 @@ mod dynamics;
 mod edge;
 mod flume;
 mod identification;
+mod inputs;
 mod moving_pulley;
 mod must_hold;
 mod noise;
@@ -41,7 +42,7 @@ pub struct Args {
 type Make = fn(&Bench) -> Result<Section>;
 
 /// The sections: name for `--only`, and what makes them.
-const SECTIONS: [(&str, Make); 11] = [
+const SECTIONS: [(&str, Make); 12] = [
     ("statics", statics::section),
     ("dynamics", dynamics::section),
     ("sheaves", sheaves::section),
@@ -52,6 +53,7 @@ const SECTIONS: [(&str, Make); 11] = [
     ("flume", flume::section),
     ("identification", identification::section),
     ("noise", noise::section),
+    ("inputs", inputs::section),
     ("peers", peers::section),
 ];
 
