@@ -1,5 +1,10 @@
 //! The only door to the physics: a scene goes in, committed states come out.
 
+mod direction;
+mod drives;
+mod rates;
+mod sensitivity;
+
 use crate::equilibrium;
 use crate::integrator::{Integrator, Method, Problem, Trial};
 use crate::ledger::Ledger;
@@ -7,6 +12,7 @@ use crate::linalg::BlockTridiagonal;
 use crate::outputs::{Outputs, observe};
 use crate::scene::{Initial, Scene};
 use crate::system::{FirstEnd, Matrices, Ramp, System};
+use drives::Drives;
 use nalgebra::Vector3;
 use thiserror::Error;
 
@@ -65,6 +71,8 @@ pub struct Simulation {
     backup: State,
     work: Work,
     outputs: Outputs,
+    /// How the last step began, with `backup`; `None` if the state does not come from a step.
+    last: Option<(Drives, Inputs)>,
 }
 
 /// Everything that the next step depends on, beside the drives.
@@ -146,6 +154,7 @@ impl Simulation {
                 cable: crate::outputs::CableOutputs { points: vec![Vector3::zeros(); scene.points], ..Default::default() },
                 ..Outputs::default()
             },
+            last: None,
             system,
         })
     }
@@ -156,6 +165,7 @@ impl Simulation {
     /// # Errors
     /// [`SimError::Start`] when there is no such state.
     pub fn initialize(&mut self, time: f64, inputs: &Inputs) -> Result<(), SimError> {
+        self.last = None;
         let scene = &self.scene;
         let system = &mut self.system;
         system.keeps_axial = false;
@@ -331,24 +341,23 @@ impl Simulation {
         kept.clear();
         self.visit_tangent(&mut |x| kept.push(*x));
         self.work.tangent = kept;
-        let (ship, winch) = (self.system.ship.clone(), self.winch_state());
+        let drives = self.drives();
+        self.last = None;
         self.drive(begin, time - begin, inputs);
         match self.integrate(time).and_then(|()| self.arrive(time)) {
-            Ok(()) => Ok(()),
+            Ok(()) => {
+                self.last = Some((drives, inputs.clone()));
+                Ok(())
+            }
             Err(message) => {
                 let mut kept = self.work.outputs.iter();
                 self.outputs.visit(&mut |x| *x = kept.next().copied().unwrap_or(*x));
-                self.state.copy(&self.backup);
                 let kept = std::mem::take(&mut self.work.tangent);
                 let mut numbers = kept.iter();
                 self.visit_tangent(&mut |x| *x = numbers.next().copied().unwrap_or(*x));
                 self.work.tangent = kept;
                 self.method.retake(&mut self.system);
-                self.system.restore_axial(&self.state.n);
-                self.system.ship = ship;
-                if let (FirstEnd::Winch { drive, .. }, Some(x)) = (&mut self.system.first, winch) {
-                    drive.restore(begin, x);
-                }
+                self.rewind(&drives);
                 self.outputs.status.code = 2;
                 self.outputs.status.message.clone_from(&message);
                 Err(SimError::Step(message))
@@ -367,39 +376,6 @@ impl Simulation {
         self.conclude();
         self.observe();
         if self.is_finite() { Ok(()) } else { Err(format!("at t = {time} s: {NOT_FINITE}")) }
-    }
-
-    fn winch_state(&self) -> Option<[f64; 2]> {
-        match &self.system.first {
-            FirstEnd::Winch { drive, .. } => Some(drive.state()),
-            FirstEnd::Anchor(_) => None,
-        }
-    }
-
-    /// Lays the paths of everything prescribed over the next `h` seconds.
-    fn drive(&mut self, t: f64, h: f64, inputs: &Inputs) {
-        let system = &mut self.system;
-        system.begin = t;
-        system.ship.advance(t, h, &inputs.ship);
-        system.current = std::array::from_fn(|i| Ramp::from(&inputs.current[i]));
-        system.body_force = std::array::from_fn(|i| Ramp::from(&inputs.body_force[i]));
-        if let (FirstEnd::Winch { drive, geometry, .. }, Some(winch)) = (&mut system.first, &self.scene.winch) {
-            let c = &inputs.winch;
-            let mut path = [c.value, c.first.unwrap_or(0.0), c.second.unwrap_or(0.0)];
-            if winch.payout_command {
-                let k = geometry.sense / geometry.radius;
-                path = [self.state.first_angle + k * path[0], k * path[1], k * path[2]];
-            }
-            drive.advance(t, h, &path);
-        }
-        // Where the first node's acceleration jumps the cable's does not, so that relative to it the whole cable's does.
-        let base = system.environment(t).base.map(|b| b.0[2]);
-        for a in self.state.a.chunks_exact_mut(6).take(system.arc.len()).skip(1) {
-            for c in 0..3 {
-                a[c] -= base[c] - self.state.base[c];
-            }
-        }
-        self.state.base = base;
     }
 
     fn integrate(&mut self, end: f64) -> Result<(), String> {
@@ -565,12 +541,9 @@ impl Simulation {
             return Err(SimError::State("it holds numbers that are not finite".into()));
         }
         self.visit(&mut |x| *x = numbers.next().unwrap_or(f64::NAN));
-        let t = self.state.time;
+        self.last = None;
         self.method.retake(&mut self.system);
         self.system.restore_axial(&self.state.n);
-        if let FirstEnd::Winch { drive, .. } = &mut self.system.first {
-            drive.restored(t);
-        }
         self.outputs.status.message.clear();
         self.set_tolerance();
         Ok(())
@@ -599,6 +572,11 @@ impl Simulation {
         }
         s.ledger.visit(visit);
         self.system.ship.visit(visit);
+        visit(&mut self.system.begin);
+        for ramp in self.system.current.iter_mut().chain(&mut self.system.body_force) {
+            visit(&mut ramp.value);
+            visit(&mut ramp.rate);
+        }
         if let Some(turbulence) = &mut self.system.turbulence {
             visit(&mut turbulence.start);
         }

@@ -175,7 +175,7 @@ def test_exact_capabilities_are_stated(flume):
     cs = flume.description.coSimulation
     assert cs.canHandleVariableCommunicationStepSize and cs.canGetAndSetFMUstate and cs.canSerializeFMUstate
     assert cs.canNotUseMemoryManagementFunctions and not cs.canBeInstantiatedOnlyOncePerProcess
-    assert not cs.providesDirectionalDerivative and not cs.maxOutputDerivativeOrder
+    assert cs.providesDirectionalDerivative and cs.maxOutputDerivativeOrder == 1 and cs.canInterpolateInputs
     experiment = flume.description.defaultExperiment
     values = [float(x) for x in (experiment.startTime, experiment.stopTime, experiment.tolerance, experiment.stepSize)]
     assert all(math.isfinite(x) for x in values) and values[1] > values[0] and values[3] > 0

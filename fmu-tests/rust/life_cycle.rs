@@ -85,8 +85,10 @@ fn calls() -> Vec<Call> {
         ("fmi2SetBoolean", "INS", |f| unsafe { fmi2SetBoolean(f.c, null(), 0, null()) }),
         ("fmi2SetString", "INS", |f| unsafe { fmi2SetString(f.c, null(), 0, null()) }),
         ("fmi2SetRealInputDerivatives", "INS", |f| unsafe { fmi2SetRealInputDerivatives(f.c, null(), 0, null(), null()) }),
-        ("fmi2GetRealOutputDerivatives", "", |f| unsafe { fmi2GetRealOutputDerivatives(f.c, null(), 0, null(), null_mut()) }),
-        ("fmi2GetDirectionalDerivative", "", |f| unsafe { fmi2GetDirectionalDerivative(f.c, null(), 0, null(), 0, null(), null_mut()) }),
+        ("fmi2GetRealOutputDerivatives", "SFT", |f| unsafe { fmi2GetRealOutputDerivatives(f.c, null(), 0, null(), null_mut()) }),
+        ("fmi2GetDirectionalDerivative", "NSFT", |f| unsafe {
+            fmi2GetDirectionalDerivative(f.c, null(), 0, null(), 0, null(), null_mut())
+        }),
         ("fmi2GetFMUstate", "INSFT", |f| {
             let state = f.save();
             f.free(state);
@@ -356,6 +358,50 @@ fn input_derivatives_hold_for_one_step() {
     };
     assert!(expired(a) && expired(b));
     [saved, a, b].into_iter().for_each(|state| fmu.free(state));
+}
+
+#[test]
+fn derivatives_of_outputs_are_refused_with_their_names() {
+    let fmu = Fmu::started();
+    let rate = |name: &str, order: i32| unsafe { fmi2GetRealOutputDerivatives(fmu.c, &fmu.reference(name), 1, &order, &mut 0.0) };
+    fmu.refused(rate("winch.tension", 2), &["winch.tension", "order 2", "expected 1"]);
+    fmu.refused(rate("winch.tension", 0), &["winch.tension", "order 0"]);
+    fmu.refused(rate("solver.energy_error", 1), &["solver.energy_error", "no derivatives"]);
+    fmu.refused(rate("ship.x", 1), &["ship.x", "no output"]);
+    assert_eq!(rate("winch.tension", 1), Status::Ok);
+    let by = |unknown: &str, known: &str, seed: f64| unsafe {
+        fmi2GetDirectionalDerivative(fmu.c, &fmu.reference(unknown), 1, &fmu.reference(known), 1, &seed, &mut 0.0)
+    };
+    fmu.refused(by("winch.tension", "ship.x", 1.0), &["after a step"]);
+    fmu.sail(0, 1, 0.01);
+    fmu.refused(by("winch.tension", "body.x", 1.0), &["body.x", "no input"]);
+    fmu.refused(by("ship.x", "ship.x", 1.0), &["ship.x", "no output"]);
+    fmu.refused(by("winch.tension", "ship.x", f64::NAN), &["ship.x", "finite"]);
+    assert_eq!(by("winch.tension", "ship.x", 1.0), Status::Ok);
+    // Nothing is asked along no direction.
+    assert_eq!(by("winch.tension", "ship.x", 0.0), Status::Ok);
+}
+
+/// Rates are part of the state: a restored instance has them to the bit, and asking changes nothing.
+#[test]
+fn exact_rates_come_back_with_the_state() {
+    let (fmu, other) = (Fmu::started(), Fmu::new());
+    fmu.sail(0, 5, 0.01);
+    let rates = |fmu: &Fmu| {
+        let references = ["winch.tension", "winch.rate", "body.tension", "body.vx", "ship.force.z"].map(|name| fmu.reference(name));
+        let mut values = [f64::NAN; 5];
+        assert_eq!(
+            unsafe { fmi2GetRealOutputDerivatives(fmu.c, references.as_ptr(), 5, [1; 5].as_ptr(), values.as_mut_ptr()) },
+            Status::Ok
+        );
+        values.map(f64::to_bits)
+    };
+    let state = fmu.save();
+    let expected = rates(&fmu);
+    assert_eq!(other.restore(state), Status::Ok);
+    assert_eq!(rates(&other), expected);
+    assert_eq!(other.sail(5, 7, 0.01), fmu.sail(5, 7, 0.01));
+    fmu.free(state);
 }
 
 #[test]

@@ -1,10 +1,11 @@
 //! documentation/index.html, written from the same tables as the interface.
 
+use crate::advice::{ADVICE, DERIVATIVES};
 use crate::document::{LOG_CATEGORIES, STATUS_CODES};
 use crate::keys::{Constant, GROUPS, KEYS, Presence};
 use crate::notes::notes;
 use crate::units::type_named;
-use crate::{Causality, Document, Value, Variability, Variable};
+use crate::{Causality, Document, Kind, Quantity, Value, Variability, Variable};
 use std::fmt::Write;
 
 /// The page.
@@ -26,6 +27,8 @@ pub fn page(d: &Document) -> String {
     p += if d.shape.ned { FRAMES_NED } else { FRAMES_Z_UP };
     p += SIGNS;
     p += STEPS;
+    p += DERIVATIVES;
+    p += ADVICE;
     p += "<h2 id=\"variables\">Inputs and outputs</h2>\n";
     for (title, causality) in [("Inputs", Causality::Input), ("Outputs", Causality::Output)] {
         variables(&mut p, title, causality, d.variables);
@@ -51,6 +54,7 @@ caption { text-align: left; font-weight: bold; padding: 0.4rem 0; }
 
 const CONTENTS: &str = "<p><a href=\"#about\">This scene</a> &middot; <a href=\"#use\">How to \
 use it</a> &middot; <a href=\"#model\">Model</a> &middot; <a href=\"#frames\">Frames and signs</a> &middot; <a href=\"#steps\">Steps</a> &middot; \
+<a href=\"#derivatives\">Derivatives</a> &middot; \
 <a href=\"#variables\">Inputs and outputs</a> &middot; <a href=\"#parameters\">Parameters</a> &middot; <a href=\"#scene\">Scene file</a> &middot; \
 <a href=\"#limits\">Limits</a> &middot; <a href=\"#status\">Errors and status</a></p>\n";
 
@@ -60,7 +64,7 @@ const USE: &str = "<h2 id=\"use\">How to use it</h2>
 <li>Set the inputs for the start time while the FMU initializes: the cable's start shape is found for the ship's pose that is given there. Inputs that
 nobody sets keep the start values listed below; that is a ship at rest, a winch that holds still and no current but the scene's.</li>
 <li>At each communication point set the inputs of that time, then do the step. Give the ship's velocities, and accelerations where the FMU has
-them, with its pose: a pose alone has to be smoothed, which costs delay.</li>
+them, with its pose: a pose alone has to be continued from past samples, which costs accuracy (<a href=\"#derivatives\">how much</a>).</li>
 <li>Look at <code>status.code</code> after each step, in particular if the importing tool ignores what a step returns.</li>
 </ol>
 <p>Feed <code>ship.force</code> and <code>ship.moment</code>, or <code>ship.force_world</code>, back to a ship that the cable shall pull at. Outputs have no
@@ -167,7 +171,10 @@ fn variables(p: &mut String, title: &str, causality: Causality, all: &[Variable]
             _ if parameter => "<td>fixed</td>",
             _ => "",
         };
-        let description = escape(&v.description);
+        let mut description = escape(&v.description);
+        if matches!(v.quantity, Quantity::Output(output) if v.kind == Kind::Real && !output.is_smooth()) {
+            description += " (no derivatives)";
+        }
         *p += &format!("<tr><td>{}</td><td>{unit}</td><td>{:?}</td>{start}{change}<td>{description}</td></tr>\n", escape(&v.name), v.kind);
     }
     *p += "</table>\n";

@@ -5,6 +5,7 @@
 //! number there is an FMI parameter). From them come the variables, modelDescription.xml, the HTML page and the check of scene files.
 //! This crate knows FMI and names, but no physics and no file format of scenes.
 
+mod advice;
 mod document;
 #[cfg(feature = "xml")]
 mod groups;
@@ -16,6 +17,7 @@ pub mod notes;
 pub mod osp;
 mod pattern;
 pub mod scenes;
+mod smooth;
 #[cfg(feature = "xml")]
 pub mod ssp;
 pub mod table;
@@ -26,6 +28,7 @@ pub mod units;
 pub mod xml;
 
 pub use document::{Document, LOG_CATEGORIES, STATUS_CODES};
+pub use smooth::MAX_OUTPUT_DERIVATIVE_ORDER;
 pub use table::{Output, variables};
 
 /// FMI base type.

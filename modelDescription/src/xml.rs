@@ -2,7 +2,7 @@
 
 use crate::document::LOG_CATEGORIES;
 use crate::units::{TYPES, Type, UNITS, Unit};
-use crate::{Causality, Document, Kind, Value, Variability, Variable};
+use crate::{Causality, Document, Kind, MAX_OUTPUT_DERIVATIVE_ORDER, Value, Variability, Variable};
 use quick_xml::events::{BytesDecl, Event};
 use quick_xml::writer::Writer;
 use std::io;
@@ -56,11 +56,11 @@ fn capabilities(name: &str) -> Attributes {
         ("modelIdentifier", name.into()),
         ("canHandleVariableCommunicationStepSize", "true".into()),
         ("canInterpolateInputs", "true".into()),
-        ("maxOutputDerivativeOrder", "0".into()),
+        ("maxOutputDerivativeOrder", MAX_OUTPUT_DERIVATIVE_ORDER.to_string()),
         ("canNotUseMemoryManagementFunctions", "true".into()),
         ("canGetAndSetFMUstate", "true".into()),
         ("canSerializeFMUstate", "true".into()),
-        ("providesDirectionalDerivative", "false".into()),
+        ("providesDirectionalDerivative", "true".into()),
     ]
 }
 
@@ -154,7 +154,8 @@ fn structure(w: &mut Xml, variables: &[Variable]) -> io::Result<()> {
         return leaf(w, "ModelStructure", vec![]);
     }
     parent(w, "ModelStructure", vec![], |w| {
-        // Outputs are those of the last committed state: no direct feed-through.
+        // Outputs are those of the last committed state: no direct feed-through. The directional derivatives are those of a whole step, which
+        // is no dependency at a communication point.
         let no_dependencies = |i: &usize| vec![("index", i.to_string()), ("dependencies", String::new())];
         parent(w, "Outputs", vec![], |w| outputs.iter().try_for_each(|i| leaf(w, "Unknown", no_dependencies(i))))?;
         // The start state may depend on everything, which is what leaving out the dependencies means.

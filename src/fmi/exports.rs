@@ -240,18 +240,21 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate(c: Component, bytes: *const Byt
     unsafe { guard(c, Function::DeSerializeFMUstate, body) }
 }
 
-/// Not supported, as the model description says.
+/// How outputs at the end of the last step depend on the inputs of that step, along a direction of the inputs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     c: Component,
-    _unknown: *const ValueReference,
-    _unknown_count: usize,
-    _known: *const ValueReference,
-    _known_count: usize,
-    _seed: *const Real,
-    _sensitivity: *mut Real,
+    unknown: *const ValueReference,
+    unknown_count: usize,
+    known: *const ValueReference,
+    known_count: usize,
+    seed: *const Real,
+    sensitivity: *mut Real,
 ) -> Status {
-    let body = |_: &mut Instance| Err(error("this FMU has no directional derivatives (providesDirectionalDerivative = false)"));
+    let body = |i: &mut Instance| unsafe {
+        let (unknown, into) = (input(unknown, unknown_count)?, output(sensitivity, unknown_count)?);
+        i.directional_derivative(unknown, input(known, known_count)?, input(seed, known_count)?, into)
+    };
     unsafe { guard(c, Function::GetDirectionalDerivative, body) }
 }
 
@@ -269,17 +272,18 @@ pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
     }
 }
 
-/// Not supported, as the model description says.
+/// Time derivatives of outputs, of order 1, at the last communication point.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
     c: Component,
-    _vr: *const ValueReference,
-    _nvr: usize,
-    _order: *const Integer,
-    _value: *mut Real,
+    vr: *const ValueReference,
+    nvr: usize,
+    order: *const Integer,
+    value: *mut Real,
 ) -> Status {
-    let body = |_: &mut Instance| Err(error("this FMU has no output derivatives (maxOutputDerivativeOrder = 0)"));
-    unsafe { guard(c, Function::GetRealOutputDerivatives, body) }
+    unsafe {
+        guard(c, Function::GetRealOutputDerivatives, |i| i.output_derivatives(input(vr, nvr)?, input(order, nvr)?, output(value, nvr)?))
+    }
 }
 
 /// One communication step of any size. fmi2Discard: it could not be done, and the instance is as it was before.

@@ -36,11 +36,11 @@ pub(super) struct Instance {
     pub phase: Phase,
     /// The way to the importer's logger.
     pub log: Log,
-    table: Table,
+    pub(super) table: Table,
     time: f64,
     stop: Option<f64>,
     start: Start,
-    simulation: Option<Simulation>,
+    pub(super) simulation: Option<Simulation>,
     /// Parameter changes that the simulation's scene has.
     applied: Vec<(usize, Value)>,
     /// The status code that the importer knows of.

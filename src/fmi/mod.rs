@@ -6,6 +6,7 @@
 #![allow(unsafe_code)]
 
 pub mod abi;
+pub mod derivatives;
 pub mod exports;
 mod function;
 mod guard;

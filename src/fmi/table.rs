@@ -2,11 +2,11 @@
 
 use super::abi::ValueReference;
 use super::trouble::{Trouble, error};
-use crate::outputs::Outputs;
+use crate::outputs::{Outputs, Slope};
 use crate::scene::Scene;
 use crate::sim::Inputs;
 use crate::variables::Model;
-use model_description::{Causality, Input, Kind, Quantity, Value, Variability, Variable};
+use model_description::{Causality, Input, Kind, Output, Quantity, Value, Variability, Variable};
 use std::collections::BTreeMap;
 use std::ffi::{CString, c_char};
 
@@ -18,6 +18,8 @@ struct InputRow {
     input: Input,
     variable: usize,
     derivatives: Derivatives,
+    /// Those of the last step.
+    expired: Derivatives,
 }
 
 /// Time derivatives of order 1 and 2.
@@ -51,7 +53,7 @@ impl Table {
         positions.sort_unstable();
         let inputs = variables()
             .filter_map(|(variable, row)| match row.quantity {
-                Quantity::Input(input) => Some(InputRow { input, variable, derivatives: [None; 2] }),
+                Quantity::Input(input) => Some(InputRow { input, variable, derivatives: [None; 2], expired: [None; 2] }),
                 _ => None,
             })
             .collect();
@@ -164,7 +166,7 @@ impl Table {
     /// Input derivatives hold for one step.
     pub fn expire_derivatives(&mut self) {
         for row in &mut self.inputs {
-            row.derivatives = [None; 2];
+            row.expired = std::mem::take(&mut row.derivatives);
         }
     }
 
@@ -196,6 +198,56 @@ impl Table {
             let order = usize::try_from(order).ok()?.checked_sub(1)?;
             row(input)?.derivatives.get(order).copied().flatten()
         })
+    }
+
+    /// The name of a Real variable.
+    ///
+    /// # Errors
+    /// A value reference that does not exist.
+    pub fn real_name(&self, reference: ValueReference) -> Result<&str, Trouble> {
+        Ok(&self.model.variables[self.find(Kind::Real, reference)?].name)
+    }
+
+    /// The output of this value reference, which has derivatives.
+    ///
+    /// # Errors
+    /// A variable that is no output, or has none.
+    pub fn smooth_output(&self, reference: ValueReference) -> Result<Output, Trouble> {
+        let row = &self.model.variables[self.find(Kind::Real, reference)?];
+        match row.quantity {
+            Quantity::Output(output) if output.is_smooth() => Ok(output),
+            Quantity::Output(_) => Err(error(format!("{} has no derivatives; expected an output that changes smoothly", row.name))),
+            _ => Err(error(format!("{} is no output; expected an output", row.name))),
+        }
+    }
+
+    /// The derivative of an output, in the user's frame.
+    pub fn slope_of(&self, output: Output, slope: &Slope) -> f64 {
+        slope.of(|outputs| real(&self.model.output(output, outputs)))
+    }
+
+    /// A change of the inputs that the last step began with. What the importer said of a derivative then beats what another input says of
+    /// it, so that the latter changes nothing.
+    ///
+    /// # Errors
+    /// A variable that is no input, a seed that is not finite.
+    pub fn direction(&self, references: &[ValueReference], seed: &[f64]) -> Result<Inputs, Trouble> {
+        let mut seeds = vec![0.0; self.inputs.len()];
+        for (&reference, &seed) in references.iter().zip(seed) {
+            let at = self.find(Kind::Real, reference)?;
+            let name = &self.model.variables[at].name;
+            let row = self.inputs.iter().position(|row| row.variable == at);
+            let row = row.ok_or_else(|| error(format!("{name} is no input; outputs have derivatives by inputs only")))?;
+            if !seed.is_finite() {
+                return Err(error(format!("the seed of {name} is {seed}; expected a finite number")));
+            }
+            seeds[row] += seed;
+        }
+        let row = |input: Input| self.inputs.iter().position(|row| row.input == input);
+        Ok(self.model.inputs(&|input| row(input).map_or(0.0, |row| seeds[row]), &|input, order| {
+            let order = usize::try_from(order).ok()?.checked_sub(1)?;
+            self.inputs[row(input)?].expired.get(order).copied().flatten().map(|_| 0.0)
+        }))
     }
 
     /// Takes over the outputs of a committed state.

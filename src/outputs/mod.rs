@@ -4,8 +4,10 @@
 
 mod observe;
 mod sheave;
+mod slope;
 
 pub use observe::observe;
+pub use slope::Slope;
 
 use nalgebra::Vector3;
 

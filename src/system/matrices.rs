@@ -1,6 +1,6 @@
 //! M, D, K of the linearized system and how element contributions enter them.
 
-use crate::linalg::BlockTridiagonal;
+use crate::linalg::{BlockTridiagonal, Bordered};
 use crate::math::lanes::Mat3;
 
 /// Derivatives of G = F(t, u, w) − M(u) a: M = −∂G/∂a, D = −∂G/∂w, K = −∂G/∂u.
@@ -52,6 +52,33 @@ impl Matrices {
             for x in [&mut c.damping_column, &mut c.damping_row, &mut c.stiffness_row] {
                 x.clear();
                 x.resize(n, 0.0);
+            }
+        }
+    }
+}
+
+impl Matrices {
+    /// M + g D + g² K.
+    pub fn combine(&self, g: f64, into: &mut Bordered) {
+        into.core.combine(&self.mass, &self.damping, &self.stiffness, g);
+        for (k, coupling) in self.couplings.iter().enumerate() {
+            let (column, row) = into.border(k);
+            for i in 0..column.len() {
+                column[i] = g * coupling.damping_column[i];
+                row[i] = g * (coupling.damping_row[i] + g * coupling.stiffness_row[i]);
+            }
+        }
+    }
+
+    /// f −= D w + K u.
+    pub fn resist(&self, u: &[f64], w: &[f64], f: &mut [f64]) {
+        self.damping.multiply_add(-1.0, w, f);
+        self.stiffness.multiply_add(-1.0, u, f);
+        for coupling in &self.couplings {
+            let times = |row: &[f64], x: &[f64]| row.iter().zip(x).map(|(r, x)| r * x).sum::<f64>();
+            f[coupling.at] -= times(&coupling.damping_row, w) + times(&coupling.stiffness_row, u);
+            for (f, c) in f.iter_mut().zip(&coupling.damping_column) {
+                *f -= c * w[coupling.at];
             }
         }
     }

@@ -107,16 +107,24 @@ impl WinchDrive {
         }
     }
 
-    /// Keeps the state at the step's end.
+    /// Keeps the state at the step's end, and of the path the piece that leads there.
     pub fn commit(&mut self, t: f64) {
         let j = self.angle(t).0;
         self.state = [j[0], j[1]];
+        let last = self.piece_at(t);
+        self.begin += last as f64 * self.piece;
+        self.path.swap(0, last);
+        self.path.truncate(1);
+    }
+
+    fn piece_at(&self, t: f64) -> usize {
+        let x = ((t - self.begin) / self.piece).max(0.0);
+        (x as usize).min(self.path.len() - 1)
     }
 
     /// φ with its derivatives at `t` within the present step.
     pub fn angle(&self, t: f64) -> Jet {
-        let x = ((t - self.begin) / self.piece).max(0.0);
-        let i = (x as usize).min(self.path.len() - 1);
+        let i = self.piece_at(t);
         self.path[i].jet(t - self.begin - i as f64 * self.piece)
     }
 
@@ -130,21 +138,35 @@ impl WinchDrive {
         self.path.iter().any(|p| p.0[1..].iter().any(|c| *c != 0.0))
     }
 
-    /// Numbers of the state, for snapshots.
+    /// What a step begins with.
+    pub fn committed(&self) -> Committed {
+        Committed { state: self.state, begin: self.begin, path: self.path[0] }
+    }
+
+    /// Back to what a step began with.
+    pub fn restore(&mut self, from: &Committed) {
+        self.state = from.state;
+        self.begin = from.begin;
+        self.path.clear();
+        self.path.push(from.path);
+    }
+
+    /// Numbers of what the next step begins with, for snapshots.
     pub fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        self.state.iter_mut().for_each(&mut *visit);
+        let mut c = self.committed();
+        c.state.iter_mut().chain([&mut c.begin]).chain(&mut c.path.0).for_each(&mut *visit);
+        self.restore(&c);
     }
+}
 
-    /// Back to a state at time `t`.
-    pub fn restore(&mut self, t: f64, state: [f64; 2]) {
-        self.state = state;
-        self.hold(t);
-    }
-
-    /// After reading a snapshot at time `t`: the path restarts with the next step.
-    pub fn restored(&mut self, t: f64) {
-        self.hold(t);
-    }
+/// The drum at a communication point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Committed {
+    /// φ, φ̇.
+    state: [f64; 2],
+    /// The path's last piece, and its begin, s: how the drum came here.
+    begin: f64,
+    path: Quintic,
 }
 
 /// The drum's geometry in ship axes.

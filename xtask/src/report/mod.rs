@@ -7,6 +7,7 @@ mod dynamics;
 mod edge;
 mod flume;
 mod identification;
+mod inputs;
 mod moving_pulley;
 mod must_hold;
 mod noise;
@@ -45,7 +46,7 @@ pub struct Args {
 type Make = fn(&Bench) -> Result<Section>;
 
 /// The sections: name for `--only`, and what makes them.
-const SECTIONS: [(&str, Make); 11] = [
+const SECTIONS: [(&str, Make); 12] = [
     ("statics", statics::section),
     ("dynamics", dynamics::section),
     ("sheaves", sheaves::section),
@@ -56,6 +57,7 @@ const SECTIONS: [(&str, Make); 11] = [
     ("flume", flume::section),
     ("identification", identification::section),
     ("noise", noise::section),
+    ("inputs", inputs::section),
     ("peers", peers::section),
 ];
 
