@@ -83,6 +83,18 @@ pub fn run(_args: Args) -> Result<()> {
     Ok(())
 }
 
+/// Inputs over time: their names, and their values at a communication point.
+pub type InputsOverTime = (&'static [&'static str], Box<dyn Fn(f64) -> Vec<f64> + Sync>);
+
+/// The demo's ship motion, every 10 ms.
+///
+/// # Errors
+/// None that its fixed options could have.
+pub fn sea_inputs() -> Result<InputsOverTime> {
+    let motion = generate(&sea())?;
+    Ok((&HEADER[1..], Box::new(move |t| motion.row((t / STEP).round() as usize).to_vec())))
+}
+
 /// What the winch is told.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Winch {
@@ -295,7 +307,7 @@ fn in_words(o: &Options) -> String {
 }
 
 /// Processor and system.
-fn machine() -> String {
+pub fn machine() -> String {
     let model = fs::read_to_string("/proc/cpuinfo").ok().and_then(|text| processor(&text)).unwrap_or_else(|| "unknown processor".into());
     let count = thread::available_parallelism().map_or_else(|_| String::new(), |n| format!(", {n} logical processors"));
     format!("{model}{count} (the FMU uses one), {OS} {ARCH}")

@@ -40,6 +40,8 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Run scenes by every time integrator: speed against error; writes fmu-tests/bench
+    Bench(report::BenchArgs),
     /// Pack the default scene, drive it over a ship motion and report under target/demo
     Demo(demo::Args),
     /// Gather the built-in scenes' FMUs with all that goes with them in target/dist
@@ -71,6 +73,7 @@ fn main() -> ExitCode {
         }
     };
     let outcome = match cli.command {
+        Command::Bench(args) => report::run_bench(args),
         Command::Demo(args) => demo::run(args),
         Command::Dist(args) => dist::run(args),
         Command::Package(args) => package::run(args),

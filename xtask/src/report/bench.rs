@@ -8,6 +8,7 @@ use std::fs;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
+use std::time::Instant;
 use tempfile::TempDir;
 
 /// The built library and a folder for scenes and FMUs, which is gone with it.
@@ -125,6 +126,10 @@ pub struct Record<const N: usize> {
     pub times: Vec<f64>,
     /// One column a name.
     pub columns: [Vec<f64>; N],
+    /// What the communication loop took by the clock, s.
+    pub seconds: f64,
+    /// The solver's sub-steps.
+    pub sub_steps: f64,
 }
 
 /// Runs an FMU and records outputs.
@@ -137,7 +142,7 @@ pub fn record<const N: usize>(fmu: &Fmu, drive: &Drive, outputs: [&str; N]) -> R
     let reference = |name: &&str| Ok(fmu.description.variable(name)?.reference);
     let inputs = drive.inputs.iter().map(reference).collect::<Result<Vec<_>>>()?;
     let references = outputs.iter().map(reference).collect::<Result<Vec<_>>>()?;
-    let mut record = Record { times: Vec::new(), columns: std::array::from_fn(|_| Vec::new()) };
+    let mut record = Record { times: Vec::new(), columns: std::array::from_fn(|_| Vec::new()), seconds: 0.0, sub_steps: 0.0 };
     let mut row = [f64::NAN; N];
     let mut push = |time: f64, instance: &Instance| -> Result<()> {
         instance.get_reals(&references, &mut row)?;
@@ -146,12 +151,15 @@ pub fn record<const N: usize>(fmu: &Fmu, drive: &Drive, outputs: [&str; N]) -> R
         Ok(())
     };
     push(0.0, &instance)?;
+    let clock = Instant::now();
     for k in 0..(drive.end / drive.step).round() as usize {
         let (from, to) = (k as f64 * drive.step, (k + 1) as f64 * drive.step);
         instance.set_reals(&inputs, &(drive.at)(from))?;
         instance.do_step(from, to - from).map_err(|e| Failure(format!("step from t = {from} s to {to} s: {e}")))?;
         push(to, &instance)?;
     }
+    record.seconds = clock.elapsed().as_secs_f64();
+    record.sub_steps = instance.get("solver.steps")?;
     instance.terminate()?;
     Ok(record)
 }

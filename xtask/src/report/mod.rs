@@ -21,6 +21,7 @@ mod section;
 #[path = "../../../fmu-tests/rust/bench/numerics.rs"]
 mod shared_numerics;
 mod sheaves;
+mod speed;
 mod statics;
 mod tangent;
 #[path = "../../../fmu-tests/rust/bench/wire.rs"]
@@ -34,6 +35,8 @@ use row::{Row, Truth};
 use section::Section;
 use std::io::IsTerminal;
 use std::time::Instant;
+
+pub use speed::{Args as BenchArgs, bench as run_bench};
 
 /// Write fmu-tests/report from runs of packed FMUs: closed forms, the thesis's experiments, other programs' references
 #[derive(clap::Args)]

@@ -19,15 +19,41 @@ const HEADER: [&str; 7] = ["What, source, why this bound", "Truth", "Ours", "Ref
 pub fn write(sections: &[Section], folder: &Path) -> Result<()> {
     publish(folder, |folder| {
         save(&folder.join("summary.csv"), &summary(sections))?;
-        for block in sections.iter().flat_map(|s| &s.blocks) {
-            match block {
-                Block::Chart(file, chart, _) => save(&folder.join(format!("{file}.svg")), &chart.svg())?,
-                Block::Csv(file, text, _) => save(&folder.join(format!("{file}.csv")), text)?,
-                _ => {}
-            }
-        }
+        files(sections, folder)?;
         save(&folder.join("index.html"), &page(sections))
     })
+}
+
+/// Writes the folder of `cargo xtask bench` anew: the page with the machine's name, charts, and all numbers in work.csv.
+///
+/// # Errors
+/// Files that cannot be written.
+pub fn write_speed(sections: &[Section], machine: &str, numbers: &str, folder: &Path) -> Result<()> {
+    let mut page = Page::new("fairlead: speed against error").wide();
+    page.paragraph(&format!(
+        "Written by \u{201c}cargo xtask bench\u{201d} on {machine}. Each packed scene was run by every time integrator at tolerances from \
+         1e-2 to 1e-5, one thread, nothing beside it; the time is that of the communication loop (inputs, step, outputs), the least of three \
+         runs where they are short. Times are this machine's and good to a third; sub-steps and errors are exact. Other programs are not \
+         run by this command yet; what was measured of them stands in the report. All numbers are in work.csv."
+    ));
+    body(&mut page, sections);
+    publish(folder, |folder| {
+        save(&folder.join("work.csv"), numbers)?;
+        files(sections, folder)?;
+        save(&folder.join("index.html"), &page.html())
+    })
+}
+
+/// Charts and tables of numbers.
+fn files(sections: &[Section], folder: &Path) -> Result<()> {
+    for block in sections.iter().flat_map(|s| &s.blocks) {
+        match block {
+            Block::Chart(file, chart, _) => save(&folder.join(format!("{file}.svg")), &chart.svg())?,
+            Block::Csv(file, text, _) => save(&folder.join(format!("{file}.csv")), text)?,
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
 fn page(sections: &[Section]) -> String {
@@ -53,8 +79,14 @@ fn page(sections: &[Section]) -> String {
     page.paragraph(
         "Left out: the folded falling chain of the closed forms, which has not been set up yet; higher modes, which the Rust tests hold by the \
          eigenvalues of the linearized system (fmu-tests/rust/dynamics.rs); and the thesis's records over time, of which its text gives ranges \
-         only. Speed against error and hard cases are not in this part.",
+         only. Speed against error is the matter of \u{201c}cargo xtask bench\u{201d} (fmu-tests/bench); hard cases are not in this part.",
     );
+    body(&mut page, sections);
+    page.html()
+}
+
+/// Contents and sections.
+fn body(page: &mut Page, sections: &[Section]) {
     page.heading("Contents").list(&sections.iter().map(|s| (anchor(&s.title), s.title.clone())).collect::<Vec<_>>());
     for section in sections {
         page.anchored_heading(&anchor(&section.title), &section.title);
@@ -68,7 +100,6 @@ fn page(sections: &[Section]) -> String {
             };
         }
     }
-    page.html()
 }
 
 /// The table of a section's figures. A source that is the same as that of the row above is not repeated.

@@ -4,23 +4,17 @@ use super::bench::{Bench, Drive, Record, point, record, side_by_side};
 use super::must_hold::Must;
 use super::numerics::{extremes, pairs, relative_rms, rms, table};
 use super::row::{Row, Truth::Cross, figure, share};
-use super::scene::{G, NYLON, Row as ShapeRow, Scene, Wire};
+use super::scene::{G, HEAVED, HEAVY_WIRE, NYLON, Row as ShapeRow, Scene, Wire, heave};
 use super::section::{Section, thinned};
 use super::wire::pulley_pendulum;
 use crate::error::Result;
 use crate::host::Fmu;
 use crate::plots::{Chart, INK, PALETTE, Panel, Series};
-use std::f64::consts::PI;
 
 const P1: &str = include_str!("../../../fmu-tests/references/p1.csv");
 const P3: &str = include_str!("../../../fmu-tests/references/p3.csv");
 const P4A: &str = include_str!("../../../fmu-tests/references/p4a.csv");
 const P5: &str = include_str!("../../../fmu-tests/references/p5_steady.csv");
-
-/// P4's wire.
-const HEAVY_WIRE: Wire =
-    Wire { length: 200.0, diameter: 0.02, mass_per_length: 1.0, ea: 1e7, ei: 20.0, laws: "compression = \"none\"\ndamping.axial = 4e4" };
-const HEAVED: &str = "[anchor]\nposition = [0, 0, 0]\n[body]\nmass = 500\n[ship]\ninput = \"pose_velocity_acceleration\"\n";
 
 /// What a scene gives: figures with verdicts, lines of the comparison's table, a chart with its caption.
 struct Comparison {
@@ -182,15 +176,6 @@ fn p3(bench: &Bench) -> Result<Comparison> {
         line("MuJoCo", "20 hinges, 1 ms", "4.3e-4", "none"),
     ]);
     Ok(Comparison { rows, lines, chart })
-}
-
-/// Ship heave s(t) A sin(2πt/T), s a half-cosine ramp over two periods: z, its rate and acceleration.
-fn heave(t: f64, amplitude: f64, period: f64) -> Vec<f64> {
-    let (ramp, w) = (2.0 * period, 2.0 * PI / period);
-    let k = PI / ramp;
-    let s = if t < ramp { [0.5 * (1.0 - (k * t).cos()), 0.5 * k * (k * t).sin(), 0.5 * k * k * (k * t).cos()] } else { [1.0, 0.0, 0.0] };
-    let h = [(w * t).sin(), w * (w * t).cos(), -w * w * (w * t).sin()].map(|x| amplitude * x);
-    vec![s[0] * h[0], s[1] * h[0] + s[0] * h[1], s[2] * h[0] + 2.0 * s[1] * h[1] + s[0] * h[2]]
 }
 
 fn heaved(fmu: &Fmu, amplitude: f64, period: f64, end: f64) -> Result<Record<2>> {

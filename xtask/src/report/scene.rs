@@ -3,6 +3,7 @@
 pub use super::wire::{G, NYLON, Row, Wire, shape_csv};
 use crate::error::{Failure, Result};
 use model_description::scenes::named;
+use std::f64::consts::PI;
 use toml::{Table, Value};
 
 /// A scene file in memory, and the start shape that lies beside it as [`SHAPE`].
@@ -98,6 +99,21 @@ impl Wire {
     pub fn scene(&self, gravity: f64, elements: usize, points: usize, rest: &str) -> Result<Scene> {
         Scene::parse(&self.text(gravity, elements, &format!("[outputs]\npoints = {points}\n{rest}")))
     }
+}
+
+/// P4's wire.
+pub const HEAVY_WIRE: Wire =
+    Wire { length: 200.0, diameter: 0.02, mass_per_length: 1.0, ea: 1e7, ei: 20.0, laws: "compression = \"none\"\ndamping.axial = 4e4" };
+/// P4's other tables.
+pub const HEAVED: &str = "[anchor]\nposition = [0, 0, 0]\n[body]\nmass = 500\n[ship]\ninput = \"pose_velocity_acceleration\"\n";
+
+/// P4's ship heave s(t) A sin(2πt/T), s a half-cosine ramp over two periods: z, its rate and acceleration.
+pub fn heave(t: f64, amplitude: f64, period: f64) -> Vec<f64> {
+    let (ramp, w) = (2.0 * period, 2.0 * PI / period);
+    let k = PI / ramp;
+    let s = if t < ramp { [0.5 * (1.0 - (k * t).cos()), 0.5 * k * (k * t).sin(), 0.5 * k * k * (k * t).cos()] } else { [1.0, 0.0, 0.0] };
+    let h = [(w * t).sin(), w * (w * t).cos(), -w * w * (w * t).sin()].map(|x| amplitude * x);
+    vec![s[0] * h[0], s[1] * h[0] + s[0] * h[1], s[2] * h[0] + 2.0 * s[1] * h[1] + s[0] * h[2]]
 }
 
 #[cfg(test)]
