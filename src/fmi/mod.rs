@@ -6,8 +6,8 @@
 #![allow(unsafe_code)]
 
 pub mod abi;
-pub mod derivatives;
-mod exports;
+mod derivatives;
+pub mod exports;
 mod function;
 mod guard;
 mod instance;
