@@ -41,10 +41,10 @@ struct Form {
 
 const FORMS: [Form; 5] = [
     Form { name: "pose", input: "pose", inputs: 0, derivatives: 0 },
-    Form { name: "pose, derivatives of order 1", input: "pose", inputs: 0, derivatives: 1 },
-    Form { name: "pose, derivatives of order 1 and 2", input: "pose", inputs: 0, derivatives: 2 },
     Form { name: "pose_velocity", input: "pose_velocity", inputs: 1, derivatives: 0 },
     Form { name: "pose_velocity_acceleration", input: "pose_velocity_acceleration", inputs: 2, derivatives: 0 },
+    Form { name: "pose, derivatives of order 1", input: "pose", inputs: 0, derivatives: 1 },
+    Form { name: "pose, derivatives of order 1 and 2", input: "pose", inputs: 0, derivatives: 2 },
 ];
 
 /// Pose, velocity and acceleration of the ship, which comes out of rest within [`FIRST`].
@@ -104,12 +104,14 @@ pub fn section(bench: &Bench) -> Result<Section> {
     let scene = || Scene::built_in("overboard")?.ok_or_else(|| Failure("there is no built-in scene overboard".into()));
     let pack = |form: &Form| bench.pack(&scene()?.with("ship.input", form.input));
     let fmus = FORMS.iter().map(pack).collect::<Result<Vec<_>>>()?;
-    let full = FORMS.len() - 1;
+    let (pose, velocity, full) = (0, 1, 2);
     // The reference takes longest, so it comes first.
     let mut jobs = vec![(full, STEPS[0], Some(TIGHT))];
     jobs.extend(STEPS.iter().flat_map(|step| (0..FORMS.len()).map(|form| (form, *step, None))));
     let runs = side_by_side(&jobs, |(form, step, tolerance)| match FORMS[*form].derivatives {
         1.. if *step < TWINS_FROM => Ok(None),
+        // That is the reference.
+        _ if *form == full && *step == STEPS[0] && tolerance.is_none() => Ok(None),
         _ => tensions(&fmus[*form], &FORMS[*form], *step, *tolerance).map(Some),
     });
     let mut runs = runs.into_iter();
@@ -155,12 +157,12 @@ pub fn section(bench: &Bench) -> Result<Section> {
         ))
         .rows(vec![
             row(full, 100.0, 1e-2, "what the FMU's documentation promises of pose_velocity_acceleration"),
-            row(3, 50.0, 1e-2, "what it promises of pose_velocity"),
-            row(0, 10.0, 1e-2, "what it promises of a pose alone"),
+            row(velocity, 50.0, 1e-2, "what it promises of pose_velocity"),
+            row(pose, 10.0, 1e-2, "what it promises of a pose alone"),
         ])
         .table(&header, table.collect())
         .chart("inputs", chart, "Input derivatives (dashed) and the inputs for the same derivatives give the same motion, and the same error.")
-        .csv("inputs", "step_ms,pose,pose_d1,pose_d2,pose_velocity,pose_velocity_acceleration", &all, "greatest error over the mean tension"))
+        .csv("inputs", "step_ms,pose,pose_velocity,pose_velocity_acceleration,pose_d1,pose_d2", &all, "greatest error over the mean tension"))
 }
 
 #[cfg(test)]

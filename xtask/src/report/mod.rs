@@ -92,10 +92,6 @@ pub fn run(args: Args) -> Result<()> {
     }
     print!("{}", page::verdicts(&sections));
     println!("{} FMUs packed, {:.0} s", bench.count(), clock.elapsed().as_secs_f64());
-    if args.only.is_some() {
-        std::fs::create_dir_all("/tmp/only").ok();
-        page::write(&sections, std::path::Path::new("/tmp/only"))?;
-    } // TEMPORARY
     if args.only.is_none() {
         let folder = root().join("fmu-tests").join("report");
         page::write(&sections, &folder)?;
