@@ -6,7 +6,7 @@
 #![allow(unsafe_code)]
 
 pub mod abi;
-pub mod derivatives;
+mod derivatives;
 pub mod exports;
 mod function;
 mod guard;

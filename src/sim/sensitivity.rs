@@ -16,7 +16,7 @@ use super::{Inputs, SimError, Simulation};
 use crate::integrator::Problem;
 use crate::linalg::Bordered;
 use crate::outputs::Slope;
-use crate::system::{Matrices, System};
+use crate::system::{FarEnd, Matrices, System};
 
 const STAGES: usize = 5;
 const GAMMA: f64 = 0.25;
@@ -161,6 +161,9 @@ impl Linear {
     fn advance(&mut self, from: &Node, to: &Node, sides: &mut Sides) -> Result<(), usize> {
         let h = to.t - from.t;
         let g = GAMMA * h;
+        for side in [&mut sides.above, &mut sides.below] {
+            side.system.attempt(from.t, h);
+        }
         for i in 0..STAGES {
             let at = from.between(to, C[i]);
             self.system.linearize(at.t, &at.u, &at.w, &at.a, &mut self.matrices, &mut self.rhs);
@@ -205,8 +208,8 @@ impl Sides {
         }
     }
 
-    /// A fixed far end is where it is.
-    fn far_end(&self, t: f64, tangent: &mut Tangent) {
+    /// A fixed far end is where it is, to the last digit; the sub-step that was attempted is over.
+    fn far_end(&mut self, t: f64, tangent: &mut Tangent) {
         let motion = |s: &Simulation| s.system.far_end.map(|end| end.motion(&s.system.environment(t).base));
         let (Some(above), Some(below)) = (motion(&self.above), motion(&self.below)) else { return };
         let at = 6 * (self.above.system.arc.len() - 1);
@@ -214,6 +217,9 @@ impl Sides {
             for c in 0..3 {
                 x[at + c] = (above[k][c] - below[k][c]) / self.width;
             }
+        }
+        for side in [&mut self.above, &mut self.below] {
+            side.system.far_end = side.system.far_end.map(|end| FarEnd::new(end.position));
         }
     }
 }
