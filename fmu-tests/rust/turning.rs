@@ -173,3 +173,28 @@ fn exact_borders_match_central_differences() {
     println!("borders against central differences: {worst:.1e} of the largest entry");
     assert!(worst < 1e-5, "{worst:e}"); // rounding of the moment over h, h² truncation at 1e-6 m of penetration
 }
+
+#[test]
+fn exact_a_ship_that_begins_to_pitch_leaves_the_sheave_behind() {
+    // Ω is relative to the ship: at the same motion, an acceleration α of the ship about the axis is felt as −I α and as nothing else.
+    let inertia = 2e-3;
+    let scene = scene(&format!("inertia = {inertia}\n[ship]\ninput = \"pose_velocity_acceleration\""));
+    let moment = |alpha: f64| {
+        let mut ship = [Channel { value: 0.0, first: Some(0.0), second: Some(0.0) }; 6];
+        ship[4].second = Some(alpha);
+        let mut system = System::new(&scene);
+        system.ship.start(0.0, &ship);
+        system.ship.advance(0.0, 1.0, &ship);
+        if let fairlead::system::FirstEnd::Winch { drive, .. } = &mut system.first {
+            drive.start(0.0, 0.0);
+        }
+        let u = fairlead::equilibrium::lay_out(&system, 0.0, &-nalgebra::Vector3::z()).expect("a way");
+        let (at, mut w, mut f) = (system.turning[0].at, vec![0.0; u.len()], vec![0.0; u.len()]);
+        w[at] = 1.3;
+        system.force(0.0, &u, &w, None, &mut f);
+        f[at]
+    };
+    let felt = moment(3.0) - moment(0.0);
+    println!("a pitch acceleration of 3 rad/s² is felt as {felt:.9} N m");
+    assert!((felt / (-3.0 * inertia) - 1.0).abs() < 1e-9, "{felt}"); // rounding of the contact's moment, about 1 N m
+}

@@ -17,9 +17,9 @@ pub fn side_view(data: &DemoData) -> Option<Figure> {
 pub fn drum_view(data: &DemoData) -> Option<Figure> {
     let reach = 5.0 * data.drum?.radius;
     let chart = Chart { equal_aspect: true, ..Chart::new("Side view about the drum", "x, m", vec![cable_panel(data, reach, 2)?]) };
-    let caption = "Trough, mean and crest from the figure above, about the drum. The cable is fixed to the drum at the end of the spoke, lies on it and leaves it where its \
-                   stiffness against bending lets it. While the ship rises, the drum turns so as to pay out. Drawn through the FMU's output \
-                   points, on the drum along its surface.";
+    let caption = "Trough, mean and crest from the figure above, as far as five radii from the drum's axis. The cable is \
+                   fixed to the drum at the end of the spoke, lies on it and leaves it where its stiffness against bending lets it. While the \
+                   ship rises, the drum turns so as to pay out. Drawn through the FMU's output points, on the drum along its surface.";
     Some(Figure { file: "drum-view", chart, caption: caption.to_owned() })
 }
 

@@ -140,18 +140,20 @@ fn close_up(data: &DemoData) -> Option<Figure> {
 }
 
 fn body(data: &DemoData) -> Option<Figure> {
-    let panels = [("body.x", "x"), ("body.y", "y"), ("body.z", "z")]
-        .iter()
-        .zip(PALETTE)
-        .map(|((name, axis), colour)| {
-            // Motion across the tow that is only rounding would fill a panel with noise.
-            let moved = data.column(name)?.iter().any(|v| v.abs() > 1e-9);
-            let mut panel = data.panel(axis, &LENGTH, &[(name, "")]).filter(|_| moved || *axis != "y")?.height(130.0);
-            panel.series[0].colour = colour;
-            Some(panel)
-        })
-        .collect();
-    over_time("body", "Body position", panels, "Position of the body at the cable's end in the inertial frame, winch compensating.")
+    let moved = |(axis, name)| {
+        let values = data.column(name)?;
+        let way: Vec<f64> = values.iter().map(|v| v - values[0]).collect();
+        // Motion across the tow that is only rounding would fill a panel with noise.
+        (axis != "y" || values.iter().any(|v| v.abs() > 1e-9)).then_some((axis, way))
+    };
+    let ways = [("x", "body.x"), ("y", "body.y"), ("z", "body.z")].map(moved);
+    let (symbol, factor) = LENGTH.fitting(ways.iter().flatten().flat_map(|(_, way)| way.iter().copied()));
+    let panels = ways.into_iter().zip(PALETTE).map(|(way, colour)| {
+        let (axis, way) = way?;
+        Some(Panel::new(&format!("{axis}, {symbol}"), vec![Series::new("", &data.times, &times(&way, factor), colour)]).height(130.0))
+    });
+    let caption = "How far the body at the cable's end is from its place in the calm, in the inertial frame, winch compensating.";
+    over_time("body", "Body position", panels.collect(), caption)
 }
 
 /// The body's path in the side view's plane.
