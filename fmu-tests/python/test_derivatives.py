@@ -23,8 +23,8 @@ def sea(t):
     return found
 
 
-def sailed(fmu, steps, **options):
-    instance = fmu.started(inputs=sea(0.0), parameters={"solver.tolerance": 1e-7}, **options)
+def sailed(fmu, steps, tolerance=1e-7):
+    instance = fmu.started(inputs=sea(0.0), parameters={"solver.tolerance": tolerance})
     for k in range(steps):
         instance.set(sea(k * H))
         instance.step(k * H, H)
@@ -59,7 +59,8 @@ def along(fmu, instance, outputs, seeds):
 
 def test_exact_output_derivatives_are_the_slopes_of_the_outputs(fmus):
     """Positions against the velocity outputs (rounding of the differences, 1e-8); tensions against differences over 2 ms of a fine run:
-    2 % of the greatest, since the cable's own waves of some milliseconds are not resolved better by them."""
+    5 % of the greatest, since they smooth the cable's own waves of some milliseconds, and four times what the solver's tolerance of 1e-7 of
+    the tension leaves of a difference over a step."""
     fmu = fmus["flume"]
     instance = sailed(fmu, 30)
     status, found = rates(fmu, instance, TENSIONS + POSITIONS + ["ship.force.x"])
@@ -77,8 +78,9 @@ def test_exact_output_derivatives_are_the_slopes_of_the_outputs(fmus):
             _, slopes = rates(fmu, fine, TENSIONS)
     differences = {name: (kept[end + 1][name] - kept[end - 1][name]) / (2 * h) for name in TENSIONS}
     size = max(map(abs, differences.values()))
+    tolerable = 0.05 * size + 4e-7 * max(kept[end].values()) / h
     for name in TENSIONS:
-        assert abs(slopes[name] - differences[name]) < 0.02 * size, name
+        assert abs(slopes[name] - differences[name]) < tolerable, name
 
 
 def test_exact_an_output_without_derivatives_is_refused_by_name(fmus):
@@ -92,11 +94,12 @@ def test_exact_an_output_without_derivatives_is_refused_by_name(fmus):
 @pytest.mark.parametrize("seeds", [{"ship.z": 1.0}, {"ship.ax": 1.0}, {"ship.x": 0.3, "ship.vz": 2.0}, {"winch.setpoint": 1.0}, {"current.x": 1.0}])
 @pytest.mark.parametrize("name", ["flume", "ned"])
 def test_exact_directional_derivatives_match_differences_of_the_step(fmus, name, seeds):
-    """The step is done again with the inputs a little changed: 1 % of the greatest, as documented, and twice the solver's tolerance of
-    1e-7 of the tension over the change."""
+    """The step is done again with the inputs a little changed: 1 % of the greatest, as documented. The tolerance is tight, since a change of
+    the input changes the sub-steps too: their error is 5 % of these differences at 1e-7."""
     fmu = fmus[name]
-    instance = sailed(fmu, 20)
-    t, change = 20 * H, 1e-5
+    instance = sailed(fmu, 20, 1e-9)
+    # Small beside what bends the drag, large beside the tolerance; a jump of the pose by 1e-5 m is one of 1e-3 m/s.
+    t, change = 20 * H, 1e-5 if seeds.keys() & set(SHIP) else 1e-4
     begin, inputs = instance.slave.getFMUState(), sea(20 * H) | {"winch.setpoint": instance["winch.setpoint"], "current.x": 0.0}
 
     def stepped(s):
@@ -111,7 +114,7 @@ def test_exact_directional_derivatives_match_differences_of_the_step(fmus, name,
     assert status == 0
     for group in (TENSIONS, POSITIONS):
         differences = {key: (above[key] - below[key]) / (2 * change) for key in group}
-        tolerable = 0.01 * max(map(abs, differences.values())) + 2e-7 * max(abs(above[key]) for key in group) / change
+        tolerable = 0.01 * max(map(abs, differences.values()))
         for key in group:
             assert abs(found[key] - differences[key]) < tolerable, (key, found[key], differences[key])
     instance.slave.freeFMUState(begin)

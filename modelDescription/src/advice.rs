@@ -11,7 +11,8 @@ balances of forces with inertia, and so their derivatives contain the cable's ow
 tolerance times the waves' frequency.</p>
 <p><b>Of outputs by inputs</b> (<code>fmi2GetDirectionalDerivative</code>): how the outputs at the end of the last step change with the inputs that the
 step began with, all else being the same: what Newton's method needs that looks for the inputs of a step. They come from the equations of motion
-linearized along the step's own sub-steps, and agree with differences of repeated steps to 1&nbsp;%; to 5&nbsp;% for a jump of the pose. Where a cable
+linearized along the step's own sub-steps, and agree with differences of repeated steps to 1&nbsp;%; to 5&nbsp;% for a jump of the pose. They are
+those of the step as it was computed: with a loose <code>solver.tolerance</code> a difference over large changes, whose sub-steps differ, is another one. Where a cable
 sticks on a sheave with friction, and for lateral reactions of a stiff drum, neither they nor differences are to be trusted. They cost about three of these steps for each
 direction, and nothing while nobody asks. Directly after a start or after <code>fmi2SetFMUstate</code> there is no last step, and asking is an error.
 The dependencies in <code>ModelStructure</code> are empty all the same: at the communication point itself no output depends on an input.</p>
