@@ -10,8 +10,8 @@
 use super::newton::{Outcome, Progress};
 use super::tableau::Tableau;
 use super::vectors::{add, blend, dot};
-use super::{Factors, Integrator, Problem, Trial};
-use crate::linalg::Columns;
+use super::{Integrator, Problem, Trial};
+use crate::linalg::{Bordered, Columns};
 use crate::system::Matrices;
 
 /// A step's length may change so much before the matrix is factored anew.
@@ -23,7 +23,8 @@ const SLOW: f64 = 0.1;
 #[derive(Clone, Debug)]
 pub struct Esdirk {
     tableau: &'static Tableau,
-    factors: Factors,
+    /// Of M + g D + g² K.
+    factors: Bordered,
     matrices: Matrices,
     mass: Columns,
     /// Where the tangent was taken: u, w, a.
@@ -52,7 +53,7 @@ impl Esdirk {
         let each = || vec![zeros(); tableau.nodes.len()];
         Self {
             tableau,
-            factors: Factors::new(size, at),
+            factors: Bordered::zeros(size / 6, at),
             matrices: Matrices::zeros(size / 6),
             mass: Columns::zeros(size / 6),
             origin: [zeros(), zeros(), zeros()],
@@ -83,7 +84,8 @@ impl Esdirk {
     fn refactor(&mut self, g: f64) -> Result<(), Trial> {
         self.counts[2] += 1;
         self.g = 0.0;
-        self.factors.factor(&self.matrices, g).map_err(|e| Trial::Singular(e.row))?;
+        self.matrices.combine(g, &mut self.factors);
+        self.factors.factor().map_err(|e| Trial::Singular(e.row))?;
         self.g = g;
         Ok(())
     }

@@ -1,17 +1,15 @@
 //! Time integration of M(u) ü = F(t, u, u̇) with block-tridiagonal matrices; knows no cable.
 
 mod esdirk;
-mod factors;
 mod method;
 mod newton;
 mod rodas4;
 mod tableau;
 #[cfg(test)]
 mod tests;
-mod vectors;
+pub mod vectors;
 
 pub use esdirk::Esdirk;
-pub use factors::Factors;
 pub use method::Method;
 pub use rodas4::Rodas4;
 pub use tableau::{ESDIRK3, ESDIRK4, TR_BDF2, Tableau};

@@ -11,8 +11,8 @@
 //! extra terms −(M(u_i) − M) a_i, with increments A_i = W_i/g − a_i − Σ c_ij W_j / h.
 
 use super::vectors::{add, blend, dot};
-use super::{Factors, Integrator, MOST_STAGES, Problem, Stage, Trial};
-use crate::linalg::Columns;
+use super::{Integrator, MOST_STAGES, Problem, Stage, Trial};
+use crate::linalg::{Bordered, Columns};
 use crate::system::Matrices;
 
 const STAGES: usize = 6;
@@ -46,7 +46,8 @@ const C: [&[f64]; STAGES] = [
 /// Work space and the factors of the present step.
 #[derive(Clone, Debug)]
 pub struct Rodas4 {
-    factors: Factors,
+    /// Of M + g D + g² K.
+    factors: Bordered,
     /// The tangent where the step begins.
     matrices: Matrices,
     /// K and M for the stages' products.
@@ -73,7 +74,7 @@ impl Rodas4 {
     pub fn new(size: usize, at: &[usize]) -> Self {
         let zeros = || vec![vec![0.0; size]; STAGES];
         Self {
-            factors: Factors::new(size, at),
+            factors: Bordered::zeros(size / 6, at),
             matrices: Matrices::zeros(size / 6),
             stiffness: Columns::zeros(size / 6),
             mass: Columns::zeros(size / 6),
@@ -128,7 +129,8 @@ impl Integrator for Rodas4 {
         let g = GAMMA * h;
         let (u0, w0, a0) = (from[0], from[1], from[2]);
         self.counts[2] += 1;
-        if let Err(e) = self.factors.factor(&self.matrices, g) {
+        self.matrices.combine(g, &mut self.factors);
+        if let Err(e) = self.factors.factor() {
             return Trial::Singular(e.row);
         }
         let varies = problem.mass_varies();

@@ -14,6 +14,7 @@
 
 use super::{Inputs, SimError, Simulation};
 use crate::integrator::Problem;
+use crate::integrator::vectors::add;
 use crate::linalg::Bordered;
 use crate::outputs::Slope;
 use crate::system::{FarEnd, Matrices, System};
@@ -221,11 +222,5 @@ impl Sides {
         for side in [&mut self.above, &mut self.below] {
             side.system.far_end = side.system.far_end.map(|end| FarEnd::new(end.position));
         }
-    }
-}
-
-fn add(y: &mut [f64], s: f64, x: &[f64]) {
-    for (y, x) in y.iter_mut().zip(x) {
-        *y += s * x;
     }
 }
