@@ -105,12 +105,17 @@ impl<const W: usize> AxialUnknown<W> {
         self.offset.0[l] + self.slope(l, s) + self.drift.0[l]
     }
 
-    /// The force of element `l` at a stage, given that of the law.
+    /// The force of element `l` at a stage, given that of the law, and its gap Σ_i − N_i.
     #[inline(always)]
-    pub fn force(&mut self, l: usize, stage: usize, r: &Resistance, s: &Strains) -> Vec3<f64> {
+    pub fn force(&self, l: usize, r: &Resistance, s: &Strains) -> (Vec3<f64>, f64) {
         let gap = self.same(l, r) * (r.axial - self.carried(l, s));
-        self.gaps[stage].0[l] = gap;
-        self.turned(l, r, gap)
+        (self.turned(l, r, gap), gap)
+    }
+
+    /// The gaps of a stage.
+    #[inline(always)]
+    pub fn remember(&mut self, stage: usize, gap: Lanes<W>) {
+        self.gaps[stage] = gap;
     }
 
     /// 1, or 0 where the law has switched between taut and slack, so that its slope at the step's begin says nothing.
@@ -125,13 +130,19 @@ impl<const W: usize> AxialUnknown<W> {
         axpy(&axpy(&r.n, -gap, &r.g), gap, &lane(&self.g, l))
     }
 
-    /// The force of element `l` at an iterate of Newton's method, given that of the law; `first` is 1 at a stage's first and 0 later.
+    /// The force of element `l` at an iterate of Newton's method, given that of the law, and the next offset; `first` is 1 at a stage's first
+    /// and 0 later.
     #[inline(always)]
-    pub fn iterate(&mut self, l: usize, first: f64, r: &Resistance, s: &Strains) -> Vec3<f64> {
+    pub fn iterate(&self, l: usize, first: f64, r: &Resistance, s: &Strains) -> (Vec3<f64>, f64) {
         let slope = self.slope(l, s);
         let n = first * self.now.0[l] + (1.0 - first) * (self.offset.0[l] + slope);
-        self.offset.0[l] = r.axial - slope;
-        self.turned(l, r, self.same(l, r) * (r.axial - n))
+        (self.turned(l, r, self.same(l, r) * (r.axial - n)), r.axial - slope)
+    }
+
+    /// The offsets of an iterate.
+    #[inline(always)]
+    pub fn shift(&mut self, offset: Lanes<W>) {
+        self.offset = offset;
     }
 
     /// Newton's method has ended with element `l` in this shape.

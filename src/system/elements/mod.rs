@@ -297,18 +297,21 @@ impl Chain {
         }
         let first = if matches!(axially, Axially::Iterate { first: true }) { 1.0 } else { 0.0 };
         let anew = if matches!(axially, Axially::Law) { 1.0 } else { 0.0 };
+        // Copies, since only of what is its own does the compiler know that nothing else changes it.
+        let known = *axial;
+        let (mut begun, mut next) = (known, Row::ZERO);
         for l in 0..LANES {
             let i = batch.inverse.0[l];
             let (u, w) = (spans(&batch.u, l), spans(&batch.w, l));
             let strains = Strains { p: along(&b, &u, i), pp: along(&d, &u, i * i), vp: along(&b, &w, i), vpp: along(&d, &w, i * i) };
-            let mut r = section.resistance_carrying::<TANGENT>(&strains, anew, if TANGENT { (1.0 - anew) * axial.now.0[l] } else { 0.0 });
+            let mut r = section.resistance_carrying::<TANGENT>(&strains, anew, if TANGENT { (1.0 - anew) * known.now.0[l] } else { 0.0 });
             if TANGENT {
-                axial.begin(l, &r, &strains, anew);
+                begun.begin(l, &r, &strains, anew);
             }
             if OF == STAGE {
-                r.n = axial.force(l, stage.index, &r, &strains);
+                (r.n, next.0[l]) = known.force(l, &r, &strains);
             } else if OF == ITERATE {
-                r.n = axial.iterate(l, first, &r, &strains);
+                (r.n, next.0[l]) = known.iterate(l, first, &r, &strains);
             }
             let wl = weight * batch.length.0[l];
             batch.elastic.0[l] += wl * r.energy;
@@ -337,6 +340,14 @@ impl Chain {
                     }
                 }
             }
+        }
+        if TANGENT {
+            *axial = begun;
+        }
+        if OF == STAGE {
+            axial.remember(stage.index, next);
+        } else if OF == ITERATE {
+            axial.shift(next);
         }
     }
 
