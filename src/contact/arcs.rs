@@ -7,7 +7,10 @@ use super::surface::{Face, Surface};
 use crate::math::lanes::Vec3;
 
 /// Intervals of the search.
-const INTERVALS: usize = 4;
+pub const INTERVALS: usize = 4;
+
+/// The most arcs that a search finds: one to an interval and one between.
+pub const MOST_ARCS: usize = INTERVALS + 2;
 
 /// A curve in the surface's axes, cubic in ξ on [0, 1]: coefficients of 1, ξ, ξ², ξ³.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,7 +18,7 @@ pub struct Cubic(pub [Vec3<f64>; 4]);
 
 impl Cubic {
     /// From end points and end slopes times the length, as (point, slope, point, slope).
-    #[inline]
+    #[inline(always)]
     pub fn hermite(q: &[Vec3<f64>; 4], length: f64) -> Self {
         let mut k = [[0.0; 3]; 4];
         for c in 0..3 {
@@ -29,14 +32,14 @@ impl Cubic {
     }
 
     /// Value at ξ.
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, x: f64) -> Vec3<f64> {
         let k = &self.0;
         std::array::from_fn(|c| k[0][c] + x * (k[1][c] + x * (k[2][c] + x * k[3][c])))
     }
 
     /// Derivative by ξ.
-    #[inline]
+    #[inline(always)]
     pub fn slope(&self, x: f64) -> Vec3<f64> {
         let k = &self.0;
         std::array::from_fn(|c| k[1][c] + x * (2.0 * k[2][c] + x * 3.0 * k[3][c]))
@@ -57,43 +60,54 @@ pub struct Arc {
 /// A curve at the ends of the search's intervals, from `start` on: what the gaps to all faces of a surface need, computed side by side.
 #[derive(Clone, Copy, Debug)]
 pub struct Samples {
-    start: f64,
-    /// Along the axis, with its derivative by ξ.
-    axial: [[f64; INTERVALS + 1]; 2],
+    /// ξ of the first.
+    pub start: f64,
+    /// Along the axis, with its derivative by ξ; zero if the surface is a cylinder.
+    pub axial: [[f64; INTERVALS + 1]; 2],
     /// ρ² − R² of a cylinder, ρ − R of a groove, with its derivative by ξ.
-    radial: [[f64; INTERVALS + 1]; 2],
+    pub radial: [[f64; INTERVALS + 1]; 2],
 }
 
 impl Samples {
     /// Of a curve in the surface's axes.
-    #[inline(always)]
     pub fn new(surface: &Surface, curve: &Cubic, start: f64) -> Self {
+        match surface.groove {
+            None => Self::of::<true>(surface.radius, curve, start),
+            Some(_) => Self::of::<false>(surface.radius, curve, start),
+        }
+    }
+
+    /// The same of a surface of this radius, `PLAIN` if it is a cylinder.
+    #[inline(always)]
+    pub fn of<const PLAIN: bool>(radius: f64, curve: &Cubic, start: f64) -> Self {
         let mut out = Self { start, axial: [[0.0; INTERVALS + 1]; 2], radial: [[0.0; INTERVALS + 1]; 2] };
-        let k = &curve.0;
-        let x: [f64; INTERVALS + 1] = std::array::from_fn(|i| if i == 0 { start } else { i as f64 / INTERVALS as f64 });
-        let at = |c: usize, x: f64| k[0][c] + x * (k[1][c] + x * (k[2][c] + x * k[3][c]));
-        let slope = |c: usize, x: f64| k[1][c] + x * (2.0 * k[2][c] + x * 3.0 * k[3][c]);
-        let plain = surface.groove.is_none();
         for i in 0..=INTERVALS {
-            let (a, b) = (at(1, x[i]), at(2, x[i]));
-            out.radial[0][i] = a * a + b * b;
-            out.radial[1][i] = a * slope(1, x[i]) + b * slope(2, x[i]);
-        }
-        if plain {
-            for i in 0..=INTERVALS {
-                out.radial[0][i] -= surface.radius * surface.radius;
-                out.radial[1][i] += out.radial[1][i];
+            let x = if i == 0 { start } else { i as f64 / INTERVALS as f64 };
+            let (s, d) = (curve.at(x), curve.slope(x));
+            let (square, rate) = (s[1] * s[1] + s[2] * s[2], s[1] * d[1] + s[2] * d[2]);
+            if PLAIN {
+                (out.radial[0][i], out.radial[1][i]) = (square - radius * radius, rate + rate);
+            } else {
+                let rho = square.sqrt();
+                (out.radial[0][i], out.radial[1][i]) = (rho - radius, rate / rho);
+                (out.axial[0][i], out.axial[1][i]) = (s[0], d[0]);
             }
-            return out;
-        }
-        for i in 0..=INTERVALS {
-            let rho = out.radial[0][i].sqrt();
-            out.radial[0][i] = rho - surface.radius;
-            out.radial[1][i] /= rho;
-            out.axial[0][i] = at(0, x[i]);
-            out.axial[1][i] = slope(0, x[i]);
         }
         out
+    }
+
+    /// Whether a gap is negative somewhere or may have a least value between two samples.
+    #[inline(always)]
+    pub fn may_touch(&self, face: Face) -> bool {
+        let (mut below, mut turns) = (false, false);
+        let mut before = 0.0;
+        for i in 0..=INTERVALS {
+            let (_, (gap, slope)) = self.gap(i, face);
+            below |= gap < 0.0;
+            turns |= (before < 0.0) & (slope >= 0.0);
+            before = slope;
+        }
+        below | turns
     }
 
     /// ξ, the gap to a face and its derivative.

@@ -1,5 +1,6 @@
 //! K. H. Hunt & F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440-445: f = k δⁿ (1 + D δ̇), never adhesive.
 
+use crate::math::lanes::Lanes;
 use crate::scene::Contact;
 
 /// Force per length with its derivatives.
@@ -13,39 +14,29 @@ pub struct Pressure {
     pub by_rate: f64,
 }
 
-/// Force per length at penetration `depth` (m) growing at `rate` (m/s).
-#[inline]
-pub fn pressure(law: &Contact, depth: f64, rate: f64) -> Pressure {
-    if depth <= 0.0 {
-        return Pressure::default();
-    }
-    // The usual exponents without a logarithm.
-    let power = if law.exponent == 1.5 {
-        depth * depth.sqrt()
-    } else if law.exponent == 1.0 {
-        depth
-    } else {
-        depth.powf(law.exponent)
-    };
+/// Force per length at penetration `depth` (m, not negative) growing at `rate` (m/s), given δⁿ. Without branches.
+#[inline(always)]
+pub fn pressure(law: &Contact, depth: f64, rate: f64, power: f64) -> Pressure {
     let elastic = law.stiffness * power;
     let gain = 1.0 + law.damping * rate;
-    if gain <= 0.0 {
-        return Pressure::default();
-    }
-    Pressure { force: elastic * gain, by_depth: law.exponent * elastic / depth * gain, by_rate: elastic * law.damping }
+    let (gain, damping) = if gain > 0.0 { (gain, law.damping) } else { (0.0, 0.0) };
+    // At δ = 0 the power is 0 too.
+    let by_depth = law.exponent * elastic / depth.max(f64::MIN_POSITIVE) * gain;
+    Pressure { force: elastic * gain, by_depth, by_rate: elastic * damping }
 }
 
 /// δⁿ of several depths, none negative.
 #[inline(always)]
-pub fn powers<const N: usize>(exponent: f64, depth: &[f64; N]) -> [f64; N] {
+pub fn powers<const N: usize>(exponent: f64, depth: &Lanes<N>) -> Lanes<N> {
     let mut out = *depth;
+    // The usual exponents without a logarithm.
     if exponent == 1.5 {
-        for x in &mut out {
-            *x *= x.sqrt();
+        for i in 0..N {
+            out.0[i] *= out.0[i].sqrt();
         }
     } else if exponent != 1.0 {
-        for x in &mut out {
-            *x = x.powf(exponent);
+        for i in 0..N {
+            out.0[i] = out.0[i].powf(exponent);
         }
     }
     out
@@ -58,8 +49,9 @@ mod tests {
     #[test]
     fn exact_law_is_never_adhesive_and_matches_its_derivatives() {
         let law = Contact { stiffness: 1e6, damping: 0.4, exponent: 1.5 };
-        assert_eq!(pressure(&law, -1e-3, 5.0).force, 0.0);
-        assert_eq!(pressure(&law, 1e-3, -5.0).force, 0.0); // leaves faster than 1/D
+        let pressure = |law: &Contact, depth: f64, rate: f64| pressure(law, depth, rate, powers(law.exponent, &Lanes([depth])).0[0]);
+        assert_eq!(pressure(&law, 0.0, 5.0), Pressure::default());
+        assert_eq!(pressure(&law, 1e-3, -5.0), Pressure::default()); // leaves faster than 1/D
         for exponent in [1.0, 1.5, 2.3] {
             let law = Contact { exponent, ..law };
             let (d, v, h) = (1e-3, 0.7, 1e-7);

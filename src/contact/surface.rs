@@ -11,7 +11,7 @@
 //! groove's depth, and from half a cable diameter to a whole one beside the rim (a cable that hangs beside the sheave is not pushed back).
 
 use super::hunt_crossley::{self, Pressure};
-use crate::math::lanes::{Mat3, Vec3, add_identity, add_outer, axpy, dot, scale, zero_mat};
+use crate::math::lanes::{Lanes, Mat3, Vec3, add_identity, add_outer, axpy, dot, lane, scale, set_lane, zero_mat};
 use crate::scene::Contact;
 
 /// The last part of a groove's depth, over which its force fades.
@@ -43,6 +43,10 @@ pub struct Friction {
     pub slip_speed: f64,
 }
 
+impl Friction {
+    const NONE: Self = Self { coefficient: 0.0, slip_speed: 1.0 };
+}
+
 /// A V groove.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Groove {
@@ -66,12 +70,9 @@ impl Groove {
         h * self.half.1 / self.half.0
     }
 
-    /// ω with its derivatives by h and |y|.
-    #[inline]
+    /// ω with its derivatives by h and |y|; the depth must be finite.
+    #[inline(always)]
     fn extent(&self, h: f64, y: f64) -> (f64, f64, f64) {
-        if self.depth.is_infinite() {
-            return (1.0, 0.0, 0.0);
-        }
         let (a, da) = fall((h - (1.0 - FADE) * self.depth) / (FADE * self.depth));
         let half = 0.5 * self.diameter;
         let (b, db) = fall((y - self.half_width(self.depth) - half) / half);
@@ -80,15 +81,10 @@ impl Groove {
 }
 
 /// From 1 at x ≤ 0 to 0 at x ≥ 1 with two continuous derivatives, and its slope.
-#[inline]
+#[inline(always)]
 fn fall(x: f64) -> (f64, f64) {
-    if x <= 0.0 {
-        (1.0, 0.0)
-    } else if x >= 1.0 {
-        (0.0, 0.0)
-    } else {
-        (1.0 - x * x * x * (10.0 + x * (6.0 * x - 15.0)), -30.0 * x * x * (1.0 - x) * (1.0 - x))
-    }
+    let x = x.clamp(0.0, 1.0);
+    (1.0 - x * x * x * (10.0 + x * (6.0 * x - 15.0)), -30.0 * x * x * (1.0 - x) * (1.0 - x))
 }
 
 /// One face of a surface: its normal in the half-plane through the axis.
@@ -164,116 +160,166 @@ impl Surface {
         }
     }
 
-    /// Forces on points side by side at `s` that move with `v` relative to the ship while the surface turns at `spin` (rad/s), and their parts
-    /// normal to the face, N/m; zero without contact.
+    /// The groove's extent at points side by side, with its derivatives by h and |y|; 1 where nothing ends it.
     #[inline(always)]
-    pub fn forces<const N: usize>(&self, face: Face, s: &[[f64; N]; 3], v: &[[f64; N]; 3], spin: f64) -> ([[f64; N]; 3], [f64; N]) {
-        let (mut rho, mut depth, mut gain) = ([0.0; N], [0.0; N], [0.0; N]);
-        // Radial unit vector and normal.
-        let (mut e, mut n) = ([[0.0; N]; 2], [[face.axial; N]; 3]);
-        let mut rate = [0.0; N];
-        for i in 0..N {
-            rho[i] = (s[1][i] * s[1][i] + s[2][i] * s[2][i]).sqrt();
-            depth[i] = (-(face.axial * s[0][i] + face.radial * (rho[i] - self.radius))).max(0.0);
-            for c in 0..2 {
-                e[c][i] = s[c + 1][i] / rho[i];
-                n[c + 1][i] = face.radial * e[c][i];
-            }
-            rate[i] = n[0][i] * v[0][i] + n[1][i] * v[1][i] + n[2][i] * v[2][i];
-            gain[i] = (1.0 - self.law.damping * rate[i]).max(0.0);
-        }
-        let mut normal = hunt_crossley::powers(self.law.exponent, &depth);
-        for i in 0..N {
-            normal[i] *= self.law.stiffness * gain[i];
-        }
-        if let Some(g) = &self.groove
-            && g.depth.is_finite()
-        {
+    fn extents<const N: usize>(&self, s: &[Lanes<N>; 3]) -> [Lanes<N>; 3] {
+        let mut out = [Lanes([1.0; N]), Lanes::ZERO, Lanes::ZERO];
+        if let Some(g) = self.groove.filter(|g| g.depth.is_finite()) {
             for i in 0..N {
-                normal[i] *= g.extent(rho[i] - self.radius, s[0][i].abs()).0;
+                let rho = (s[1].0[i] * s[1].0[i] + s[2].0[i] * s[2].0[i]).sqrt();
+                let (extent, by_h, by_y) = g.extent(rho - self.radius, s[0].0[i].abs());
+                set_lane(&mut out, i, [extent, by_h, by_y]);
             }
         }
+        out
+    }
+
+    /// Penetrations of points side by side, not negative, m. On the axis itself there is no direction, and no load.
+    #[inline(always)]
+    fn depths<const N: usize>(&self, face: Face, s: &[Lanes<N>; 3]) -> Lanes<N> {
+        let mut depth = Lanes::ZERO;
         for i in 0..N {
-            // On the axis itself there is no direction, and no load.
-            normal[i] = if rho[i] > 0.0 { normal[i] } else { 0.0 };
+            let rho = (s[1].0[i] * s[1].0[i] + s[2].0[i] * s[2].0[i]).sqrt();
+            let d = -(face.axial * s[0].0[i] + face.radial * (rho - self.radius));
+            depth.0[i] = if rho > 0.0 { d.max(0.0) } else { 0.0 };
         }
-        let mut f = [[0.0; N]; 3];
-        for c in 0..3 {
-            for i in 0..N {
-                f[c][i] = if normal[i] > 0.0 { normal[i] * n[c][i] } else { 0.0 };
+        depth
+    }
+
+    /// Loads on points side by side at `s` that move with `v` relative to the ship while the surface turns at `spin` (rad/s); derivatives only
+    /// with `TANGENT`. Zeros without contact.
+    #[inline(always)]
+    pub fn loads<const TANGENT: bool, const N: usize>(&self, face: Face, s: &[Lanes<N>; 3], v: &[Lanes<N>; 3], spin: f64) -> Loads<N> {
+        let press = [self.depths(face, s), Lanes::ZERO];
+        let press = [press[0], hunt_crossley::powers(self.law.exponent, &press[0])];
+        let extent = self.extents(s);
+        let law = self.law;
+        let mut out = Loads::ZERO;
+        // A loop for each kind: a choice within would keep its points from going side by side.
+        match self.friction {
+            None => {
+                for i in 0..N {
+                    let at = Point { s: lane(s, i), v: lane(v, i), press: lane(&press, i), extent: lane(&extent, i) };
+                    out.set::<TANGENT>(i, &at.load::<TANGENT, false>(&law, face, spin, &Friction::NONE));
+                }
             }
-        }
-        if let Some(Friction { coefficient, slip_speed }) = self.friction {
-            for i in 0..N {
-                let t = [0.0, -e[1][i], e[0][i]];
-                let slip: Vec3<f64> = std::array::from_fn(|c| v[c][i] - rate[i] * n[c][i] - spin * rho[i] * t[c]);
-                let speed = (dot(&slip, &slip) + slip_speed * slip_speed).sqrt();
-                for c in 0..3 {
-                    f[c][i] -= if normal[i] > 0.0 { coefficient * normal[i] / speed * slip[c] } else { 0.0 };
+            Some(friction) => {
+                for i in 0..N {
+                    let at = Point { s: lane(s, i), v: lane(v, i), press: lane(&press, i), extent: lane(&extent, i) };
+                    out.set::<TANGENT>(i, &at.load::<TANGENT, true>(&law, face, spin, &friction));
                 }
             }
         }
-        (f, normal)
+        out
+    }
+}
+
+/// Loads on points side by side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Loads<const N: usize> {
+    /// See [`PointLoad`]; matrices row by row.
+    pub f: [Lanes<N>; 3],
+    /// See above.
+    pub normal: Lanes<N>,
+    /// See above.
+    pub ds: [Lanes<N>; 9],
+    /// See above.
+    pub dv: [Lanes<N>; 9],
+    /// See above.
+    pub dspin: [Lanes<N>; 3],
+}
+
+impl<const N: usize> Loads<N> {
+    const ZERO: Self =
+        Self { f: [Lanes::ZERO; 3], normal: Lanes::ZERO, ds: [Lanes::ZERO; 9], dv: [Lanes::ZERO; 9], dspin: [Lanes::ZERO; 3] };
+
+    /// That on point `i`.
+    #[inline(always)]
+    pub fn at(&self, i: usize) -> PointLoad {
+        let matrix = |m: &[Lanes<N>; 9]| std::array::from_fn(|r| std::array::from_fn(|c| m[3 * r + c].0[i]));
+        PointLoad { f: lane(&self.f, i), normal: self.normal.0[i], ds: matrix(&self.ds), dv: matrix(&self.dv), dspin: lane(&self.dspin, i) }
     }
 
-    /// The force on one point with its derivatives, as in [`Surface::forces`]; `None` without contact.
     #[inline(always)]
-    pub fn load(&self, face: Face, s: &Vec3<f64>, v: &Vec3<f64>, spin: f64) -> Option<PointLoad> {
+    fn set<const TANGENT: bool>(&mut self, i: usize, load: &PointLoad) {
+        set_lane(&mut self.f, i, load.f);
+        self.normal.0[i] = load.normal;
+        if TANGENT {
+            set_lane(&mut self.ds, i, std::array::from_fn(|k| load.ds[k / 3][k % 3]));
+            set_lane(&mut self.dv, i, std::array::from_fn(|k| load.dv[k / 3][k % 3]));
+            set_lane(&mut self.dspin, i, load.dspin);
+        }
+    }
+}
+
+/// A point of the cable on a face.
+struct Point {
+    s: Vec3<f64>,
+    v: Vec3<f64>,
+    /// δ and δⁿ.
+    press: [f64; 2],
+    /// The groove's extent with its derivatives by h and |y|.
+    extent: Vec3<f64>,
+}
+
+impl Point {
+    /// The load here; see [`Surface::loads`].
+    #[inline(always)]
+    fn load<const TANGENT: bool, const ROUGH: bool>(&self, law: &Contact, face: Face, spin: f64, friction: &Friction) -> PointLoad {
+        let Self { s, v, press: [depth, power], extent: [weight, by_h, by_y] } = *self;
         let rho = (s[1] * s[1] + s[2] * s[2]).sqrt();
-        let h = rho - self.radius;
-        let depth = -(face.axial * s[0] + face.radial * h);
-        if depth <= 0.0 || rho == 0.0 {
-            return None;
-        }
-        let (weight, by_h, by_y) = self.groove.as_ref().map_or((1.0, 0.0, 0.0), |g| g.extent(h, s[0].abs()));
-        if weight == 0.0 {
-            return None;
-        }
+        // Without contact everything is finite and multiplied by zero.
+        let by_rho = if depth > 0.0 { 1.0 / rho } else { 0.0 };
         let by_y = by_y * if s[0] < 0.0 { -1.0 } else { 1.0 };
-        let (e1, e2) = (s[1] / rho, s[2] / rho);
+        let (e1, e2) = (s[1] * by_rho, s[2] * by_rho);
         let (e, t): (Vec3<f64>, Vec3<f64>) = ([0.0, e1, e2], [0.0, -e2, e1]);
         let n = [face.axial, face.radial * e1, face.radial * e2];
-        let vn = dot(&n, v);
-        let Pressure { force, by_depth, by_rate } = hunt_crossley::pressure(&self.law, depth, -vn);
+        let vn = dot(&n, &v);
+        let Pressure { force, by_depth, by_rate } = hunt_crossley::pressure(law, depth, -vn, power);
         let normal = weight * force;
         let mut load = PointLoad { f: scale(normal, &n), normal, ds: zero_mat(), dv: zero_mat(), dspin: [0.0; 3] };
-        let vt = dot(&t, v);
+        let vt = dot(&t, &v);
         // ∂n/∂s = (n_r/ρ) t tᵀ, so ∂δ̇/∂s = −(n_r/ρ) v_t t.
-        let hoop = face.radial / rho;
+        let hoop = face.radial * by_rho;
         let mut grad = axpy(&scale(-weight * by_depth, &n), -weight * by_rate * hoop * vt, &t);
         grad = axpy(&grad, force * by_h, &e);
         grad[0] += force * by_y;
-        add_outer(&mut load.ds, 1.0, &n, &grad);
-        add_outer(&mut load.ds, normal * hoop, &t, &t);
-        add_outer(&mut load.dv, -weight * by_rate, &n, &n);
-        if let Some(Friction { coefficient, slip_speed }) = self.friction {
-            let slip = axpy(&axpy(v, -vn, &n), -spin * rho, &t);
+        if TANGENT {
+            add_outer(&mut load.ds, 1.0, &n, &grad);
+            add_outer(&mut load.ds, normal * hoop, &t, &t);
+            add_outer(&mut load.dv, -weight * by_rate, &n, &n);
+        }
+        if ROUGH {
+            let Friction { coefficient, slip_speed } = *friction;
+            let slip = axpy(&axpy(&v, -vn, &n), -spin * rho, &t);
             let speed = (dot(&slip, &slip) + slip_speed * slip_speed).sqrt();
             let d = scale(1.0 / speed, &slip);
             load.f = axpy(&load.f, -coefficient * normal, &d);
-            add_outer(&mut load.ds, -coefficient, &d, &grad);
-            add_outer(&mut load.dv, coefficient * weight * by_rate, &d, &n);
-            // ∂(slip)/∂s and ∂(slip)/∂v, then through d = slip/√(slip² + v_ε²).
-            let (mut by_s, mut by_v) = (zero_mat(), zero_mat());
-            add_outer(&mut by_s, -hoop * vn, &t, &t);
-            add_outer(&mut by_s, -hoop * vt, &n, &t);
-            add_outer(&mut by_s, -spin, &t, &e);
-            add_outer(&mut by_s, spin, &e, &t);
-            add_identity(&mut by_v, 1.0);
-            add_outer(&mut by_v, -1.0, &n, &n);
-            let mu = -coefficient * normal / speed;
-            let by_spin = scale(-rho, &t);
-            load.dspin = scale(mu, &axpy(&by_spin, -dot(&d, &by_spin), &d));
-            for (m, by) in [(&mut load.ds, &by_s), (&mut load.dv, &by_v)] {
-                let along: Vec3<f64> = std::array::from_fn(|c| (0..3).map(|r| d[r] * by[r][c]).sum());
-                for r in 0..3 {
-                    for c in 0..3 {
-                        m[r][c] += mu * (by[r][c] - d[r] * along[c]);
+            if TANGENT {
+                add_outer(&mut load.ds, -coefficient, &d, &grad);
+                add_outer(&mut load.dv, coefficient * weight * by_rate, &d, &n);
+                // ∂(slip)/∂s and ∂(slip)/∂v, then through d = slip/√(slip² + v_ε²).
+                let (mut by_s, mut by_v) = (zero_mat(), zero_mat());
+                add_outer(&mut by_s, -hoop * vn, &t, &t);
+                add_outer(&mut by_s, -hoop * vt, &n, &t);
+                add_outer(&mut by_s, -spin, &t, &e);
+                add_outer(&mut by_s, spin, &e, &t);
+                add_identity(&mut by_v, 1.0);
+                add_outer(&mut by_v, -1.0, &n, &n);
+                let mu = -coefficient * normal / speed;
+                let by_spin = scale(-rho, &t);
+                load.dspin = scale(mu, &axpy(&by_spin, -dot(&d, &by_spin), &d));
+                for (m, by) in [(&mut load.ds, &by_s), (&mut load.dv, &by_v)] {
+                    let along: Vec3<f64> = std::array::from_fn(|c| d[0] * by[0][c] + d[1] * by[1][c] + d[2] * by[2][c]);
+                    for r in 0..3 {
+                        for c in 0..3 {
+                            m[r][c] += mu * (by[r][c] - d[r] * along[c]);
+                        }
                     }
                 }
             }
         }
-        Some(load)
+        load
     }
 }
 
@@ -295,6 +341,12 @@ mod tests {
         vec![Surface { friction: rough, ..plain.clone() }, Surface { friction: rough, ..grooved.clone() }, plain, grooved]
     }
 
+    /// The load on one point, if any.
+    fn load(surface: &Surface, face: Face, s: &Vec3<f64>, v: &Vec3<f64>, spin: f64) -> Option<PointLoad> {
+        let load = surface.loads::<true, 1>(face, &s.map(|x| Lanes([x])), &v.map(|x| Lanes([x])), spin).at(0);
+        (load.normal > 0.0).then_some(load)
+    }
+
     #[test]
     fn exact_tangent_matches_central_differences() {
         // In the open, in the fading part of the groove's depth, and beside its rim.
@@ -304,7 +356,7 @@ mod tests {
             let (faces, n) = surface.faces();
             for face in &faces[..n] {
                 for x in places {
-                    let f = |x: &[f64; 6]| surface.load(*face, &[x[0], x[1], x[2]], &[x[3], x[4], x[5]], 0.7);
+                    let f = |x: &[f64; 6]| load(&surface, *face, &[x[0], x[1], x[2]], &[x[3], x[4], x[5]], 0.7);
                     let Some(l) = f(&x) else { continue };
                     touched += 1;
                     for j in 0..6 {
@@ -319,7 +371,7 @@ mod tests {
                             assert!((d - exact).abs() < 1e-6 * 1e5, "{surface:?} {face:?} ({i}, {j}): {d} against {exact}"); // 1e-6 of k
                         }
                     }
-                    let at = |spin: f64| surface.load(*face, &[x[0], x[1], x[2]], &[x[3], x[4], x[5]], spin).unwrap().f;
+                    let at = |spin: f64| load(&surface, *face, &[x[0], x[1], x[2]], &[x[3], x[4], x[5]], spin).unwrap().f;
                     let (up, down) = (at(0.7 + 1e-7), at(0.7 - 1e-7));
                     for i in 0..3 {
                         assert!(((up[i] - down[i]) / 2e-7 - l.dspin[i]).abs() < 1e-6 * 1e5, "{surface:?} {face:?} spin {i}");
@@ -334,18 +386,19 @@ mod tests {
     fn exact_points_side_by_side_feel_what_one_feels() {
         // The last but one leaves faster than 1/D, the last has no direction.
         let places = [[0.03, -0.31, 0.38], [0.06, -0.43, 0.413], [0.11, 0.33, 0.4], [0.0, 0.6, 0.0], [0.03, 0.33, 0.36], [0.0; 3]];
-        let (s, v) = ([0, 1, 2].map(|c| places.map(|p| p[c])), [[0.4, -0.4, 9.0, 0.1, 9.0, 0.1]; 3]);
+        let (s, v) = ([0, 1, 2].map(|c| Lanes(places.map(|p| p[c]))), [Lanes([0.4, -0.4, 9.0, 0.1, 9.0, 0.1]); 3]);
         for surface in surfaces() {
             for exponent in [1.0, 1.5, 2.2] {
                 let surface = Surface { law: Contact { exponent, ..surface.law }, ..surface.clone() };
                 let (faces, n) = surface.faces();
                 for face in &faces[..n] {
-                    let (f, normal) = surface.forces(*face, &s, &v, 0.7);
+                    let (bare, whole) = (surface.loads::<false, 6>(*face, &s, &v, 0.7), surface.loads::<true, 6>(*face, &s, &v, 0.7));
                     for (i, place) in places.iter().enumerate() {
-                        let one = surface.load(*face, place, &[v[0][i], v[1][i], v[2][i]], 0.7);
-                        let (of, on) = one.map_or(([0.0; 3], 0.0), |l| (l.f, l.normal));
-                        // Rounding of forces up to 1e5 N/m.
-                        assert!((normal[i] - on).abs() < 1e-9 && (0..3).all(|c| (f[c][i] - of[c]).abs() < 1e-9), "{face:?} {place:?}");
+                        let (bare, l, one) = (bare.at(i), whole.at(i), load(&surface, *face, place, &lane(&v, i), 0.7));
+                        assert_eq!(one.map_or([0.0; 3], |l| l.f), l.f, "{face:?} {place:?}");
+                        assert_eq!((bare.f, bare.normal), (l.f, l.normal));
+                        let all = l.ds.iter().chain(&l.dv).flatten().chain(&l.dspin);
+                        assert!(if one.is_some() { all.clone().all(|x| x.is_finite()) } else { all.clone().all(|x| *x == 0.0) }, "{l:?}");
                     }
                 }
             }
@@ -356,7 +409,7 @@ mod tests {
     fn exact_forces_end_at_the_rim_and_beside_it() {
         let grooved = &surfaces()[3];
         let (faces, _) = grooved.faces();
-        let at = |y: f64, h: f64| faces.map(|f| grooved.load(f, &[y, 0.5 + h, 0.0], &[0.0; 3], 0.0).map_or(0.0, |l| l.normal));
+        let at = |y: f64, h: f64| faces.map(|f| load(grooved, f, &[y, 0.5 + h, 0.0], &[0.0; 3], 0.0).map_or(0.0, |l| l.normal));
         assert_eq!(at(0.0, 0.01), [0.0, 0.0]); // in the open between the flanks
         assert!(at(-0.03, 0.05)[0] > 0.0 && at(-0.03, 0.05)[1] == 0.0); // on the first flank
         assert_eq!(at(-0.06, 0.1001), [0.0, 0.0]); // over the rim

@@ -3,7 +3,7 @@
 use super::SheaveOutputs;
 use super::observe::{span_tension, span_tension_beside, tangent_at};
 use crate::contact::surface::{Face, Surface};
-use crate::math::lanes::{Vec3, axpy, dot, mat_vec};
+use crate::math::lanes::{Lanes, Vec3, axpy, dot, mat_vec};
 use crate::system::contact::{SurfaceFrame, near, touching};
 use crate::system::{Environment, System, gather};
 use nalgebra::Vector3;
@@ -22,8 +22,8 @@ pub fn to_ship(surface: &Surface, v: &Vec3<f64>) -> Vector3<f64> {
 
 /// The force per length on a point at rest, and its normal part, N/m.
 fn still(surface: &Surface, face: Face, s: &Vec3<f64>) -> (Vec3<f64>, f64) {
-    let (f, [normal]) = surface.forces(face, &s.map(|x| [x]), &[[0.0]; 3], 0.0);
-    (f.map(|[x]| x), normal)
+    let load = surface.loads::<false, 1>(face, &s.map(|x| Lanes([x])), &[Lanes::ZERO; 3], 0.0).at(0);
+    (load.f, load.normal)
 }
 
 /// First and last arc length in contact with surface `index`, m.

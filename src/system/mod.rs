@@ -14,6 +14,7 @@ mod points;
 mod turning;
 mod wetting;
 
+use contact::Near;
 pub use contact::SurfaceLoad;
 use elements::{Axial, Axially};
 pub use elements::{Chain, Tally, Wetness, gather};
@@ -148,6 +149,7 @@ pub struct System {
     tolerance: f64,
     matrices: Matrices,
     axial: Vec<Axial>,
+    near: Near,
     /// Where the last tangent was taken.
     origin: Environment,
 }
@@ -209,6 +211,7 @@ impl System {
             tolerance: 1.0,
             matrices: Matrices::default(),
             axial,
+            near: Near::new(n),
             origin: Environment::default(),
         }
     }
