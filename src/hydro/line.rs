@@ -10,7 +10,7 @@
 //! - added mass: −ρA C_m (I − t tᵀ)(r̈ − v̇_fluid) + ρA v̇_fluid; buoyancy ρA g upwards.
 
 use super::curve::Curve;
-use crate::math::lanes::{Mat3, Vec3, add_identity, add_outer, axpy, dot, scale, zero_mat};
+use crate::math::lanes::{Lanes, Mat3, Vec3, add_identity, add_outer, axpy, dot, lane, scale, set_lane, zero_mat};
 use crate::scene::{Drag, Fluid};
 
 /// Still keeps directions defined where a velocity vanishes, m/s.
@@ -102,6 +102,89 @@ pub struct LineLoad {
     pub turning: f64,
 }
 
+/// Points side by side; see [`LinePoint`].
+#[derive(Clone, Copy, Debug)]
+pub struct LinePoints<const N: usize> {
+    z: Lanes<N>,
+    v: [Lanes<N>; 3],
+    p: [Lanes<N>; 3],
+    vp: [Lanes<N>; 3],
+    a: [Lanes<N>; 3],
+    w: [Lanes<N>; 3],
+}
+
+impl<const N: usize> LinePoints<N> {
+    /// None yet.
+    pub const NONE: Self = {
+        let none = [Lanes::ZERO; 3];
+        Self { z: Lanes::ZERO, v: none, p: none, vp: none, a: none, w: none }
+    };
+
+    /// Point `l`.
+    #[inline(always)]
+    pub fn at(&self, l: usize) -> LinePoint {
+        let x = |x: &[Lanes<N>; 3]| lane(x, l);
+        LinePoint { z: self.z.0[l], v: x(&self.v), p: x(&self.p), vp: x(&self.vp), a: x(&self.a), w: x(&self.w) }
+    }
+
+    /// Sets point `l`.
+    #[inline(always)]
+    pub fn set(&mut self, l: usize, x: &LinePoint) {
+        self.z.0[l] = x.z;
+        for (to, from) in [(&mut self.v, x.v), (&mut self.p, x.p), (&mut self.vp, x.vp), (&mut self.a, x.a), (&mut self.w, x.w)] {
+            set_lane(to, l, from);
+        }
+    }
+}
+
+/// Loads on points side by side; see [`LineLoad`]. Matrices row by row.
+#[derive(Clone, Copy, Debug)]
+pub struct LineLoads<const N: usize> {
+    f: [Lanes<N>; 3],
+    dz: [Lanes<N>; 3],
+    dv: [Lanes<N>; 9],
+    dp: [Lanes<N>; 9],
+    mass: [Lanes<N>; 9],
+    turning: Lanes<N>,
+}
+
+impl<const N: usize> LineLoads<N> {
+    const ZERO: Self = Self {
+        f: [Lanes::ZERO; 3],
+        dz: [Lanes::ZERO; 3],
+        dv: [Lanes::ZERO; 9],
+        dp: [Lanes::ZERO; 9],
+        mass: [Lanes::ZERO; 9],
+        turning: Lanes::ZERO,
+    };
+
+    /// That on point `l`.
+    #[inline(always)]
+    pub fn at(&self, l: usize) -> LineLoad {
+        let matrix = |m: &[Lanes<N>; 9]| std::array::from_fn(|r| std::array::from_fn(|c| m[3 * r + c].0[l]));
+        LineLoad {
+            f: lane(&self.f, l),
+            dz: lane(&self.dz, l),
+            dv: matrix(&self.dv),
+            dp: matrix(&self.dp),
+            mass: matrix(&self.mass),
+            turning: self.turning.0[l],
+        }
+    }
+
+    #[inline(always)]
+    fn set<const TANGENT: bool>(&mut self, l: usize, load: &LineLoad) {
+        set_lane(&mut self.f, l, load.f);
+        self.turning.0[l] = load.turning;
+        if TANGENT {
+            set_lane(&mut self.dz, l, load.dz);
+            for (to, from) in [(&mut self.dv, &load.dv), (&mut self.dp, &load.dp), (&mut self.mass, &load.mass)] {
+                set_lane(to, l, std::array::from_fn(|k| from[k / 3][k % 3]));
+            }
+        }
+    }
+}
+
 impl LineInWater {
     /// From a checked scene.
     pub fn new(fluid: &Fluid, diameter: f64, gravity: f64) -> Self {
@@ -170,16 +253,37 @@ impl LineInWater {
         self.cd.at(reynolds)
     }
 
-    /// Force at a fully submerged point; derivatives only with `TANGENT`. The share of submersion is the caller's factor.
-    pub fn load<const TANGENT: bool>(&self, x: &LinePoint, flow: &Flow) -> LineLoad {
-        let stream = self.stream(x.z, flow);
-        if self.cross_flow {
-            let cd = self.coefficient(self.reynolds::<true>(x, &stream));
-            self.load_in::<TANGENT, true>(x, &stream, cd, flow)
-        } else {
-            let cd = self.coefficient(self.reynolds::<false>(x, &stream));
-            self.load_in::<TANGENT, false>(x, &stream, cd, flow)
+    /// Forces at fully submerged points side by side; derivatives only with `TANGENT`. The share of submersion is the caller's factor.
+    #[inline(always)]
+    pub fn loads<const TANGENT: bool, const N: usize>(&self, points: &LinePoints<N>, flow: &Flow) -> LineLoads<N> {
+        if self.cross_flow { self.loads_of::<TANGENT, true, N>(points, flow) } else { self.loads_of::<TANGENT, false, N>(points, flow) }
+    }
+
+    #[inline(always)]
+    fn loads_of<const TANGENT: bool, const CROSS_FLOW: bool, const N: usize>(&self, points: &LinePoints<N>, flow: &Flow) -> LineLoads<N> {
+        // Copies, since only of what is its own does the compiler know that nothing else changes it. Look-ups cannot go side by side, so they
+        // have loops of their own.
+        let (points, flow) = (*points, *flow);
+        let (mut stream, mut re, mut cd) = ([Lanes::<N>::ZERO; 6], Lanes::<N>::ZERO, [Lanes::<N>::ZERO; 2]);
+        for l in 0..N {
+            let (v, dz) = self.stream(points.z.0[l], &flow);
+            set_lane(&mut stream, l, [v[0], v[1], v[2], dz[0], dz[1], dz[2]]);
         }
+        let stream_at = |l: usize| {
+            let [a, b, c, d, e, f] = lane(&stream, l);
+            ([a, b, c], [d, e, f])
+        };
+        for l in 0..N {
+            re.0[l] = self.reynolds::<CROSS_FLOW>(&points.at(l), &stream_at(l));
+        }
+        for l in 0..N {
+            set_lane(&mut cd, l, self.coefficient(re.0[l]).into());
+        }
+        let mut out = LineLoads::ZERO;
+        for l in 0..N {
+            out.set::<TANGENT>(l, &self.load_in::<TANGENT, CROSS_FLOW>(&points.at(l), &stream_at(l), lane(&cd, l).into(), &flow));
+        }
+        out
     }
 
     /// The same where the fluid's velocity and the drag coefficient (with its derivative by the Reynolds number) are known.
@@ -374,10 +478,16 @@ mod tests {
         .collect()
     }
 
+    fn load<const TANGENT: bool>(water: &LineInWater, x: &LinePoint, flow: &Flow) -> LineLoad {
+        let mut points = LinePoints::<1>::NONE;
+        points.set(0, x);
+        water.loads::<TANGENT, 1>(&points, flow).at(0)
+    }
+
     /// x = (z, v, r_p).
     fn force(water: &LineInWater, x: &[f64; 7]) -> LineLoad {
         let point = LinePoint { z: x[0], v: [x[1], x[2], x[3]], p: [x[4], x[5], x[6]], vp: [0.0; 3], a: [0.5, 0.2, -0.7], w: [0.0; 3] };
-        water.load::<true>(&point, &Flow { velocity: [0.05, -0.02, 0.0], acceleration: [0.3, 0.1, 0.0] })
+        load::<true>(water, &point, &Flow { velocity: [0.05, -0.02, 0.0], acceleration: [0.3, 0.1, 0.0] })
     }
 
     #[test]
@@ -422,7 +532,7 @@ mod tests {
         let water = &waters()[0];
         let drag = |v: [f64; 3]| {
             let x = LinePoint { z: -9.0, v, p: [0.0, 0.0, 1.0], vp: [0.0; 3], a: [0.0; 3], w: [0.0; 3] };
-            let mut f = water.load::<false>(&x, &Flow { velocity: [-0.1, -0.2, 0.0], acceleration: [0.0; 3] }).f;
+            let mut f = load::<false>(water, &x, &Flow { velocity: [-0.1, -0.2, 0.0], acceleration: [0.0; 3] }).f;
             f[2] -= water.buoyancy;
             f
         };

@@ -4,6 +4,7 @@
 //! only as the uniform inertia −M r̈_b and through the velocities that drag and contact see, and a ship far from the origin costs no digits.
 
 pub mod contact;
+mod cut;
 mod elements;
 mod environment;
 mod far_end;
@@ -28,14 +29,12 @@ pub use turning::TurningSheave;
 
 use crate::cable::section::Section;
 use crate::contact::surface::{Friction, Groove, Surface};
-use crate::hydro::line::{Flow, LineInWater, LinePoint};
+use crate::hydro::line::{Flow, LineInWater};
 use crate::hydro::lump::LumpInWater;
-use crate::hydro::surface::line_share;
 use crate::hydro::turbulence::Turbulence;
 use crate::integrator::{Problem, Stage};
 use crate::math::jet::Jet;
 use crate::math::lanes::{Mat3, Vec3, add_identity, add_outer, dot};
-use crate::math::quadrature::GAUSS3;
 use crate::scene::Scene;
 use crate::ship::ShipDrive;
 use crate::sim::Channel;
@@ -150,6 +149,7 @@ pub struct System {
     matrices: Matrices,
     axial: Vec<Axial>,
     near: Near,
+    crossed: Vec<usize>,
     /// Where the last tangent was taken.
     origin: Environment,
 }
@@ -212,6 +212,7 @@ impl System {
             matrices: Matrices::default(),
             axial,
             near: Near::new(n),
+            crossed: Vec::with_capacity(n),
             origin: Environment::default(),
         }
     }
@@ -316,64 +317,20 @@ impl System {
     ) {
         self.tally = self.chain.pass::<TANGENT>(env, u, w, a, axially, &mut self.axial, &mut self.forces, m);
         if self.chain.water.is_some() {
-            self.surface::<TANGENT>(env, u, w, a, m);
+            self.cut::<TANGENT>(env, u, w, a, m);
         }
         if !self.surfaces.is_empty() {
             self.contact::<TANGENT>(env, u, w, m);
         }
         f.fill(0.0);
         for (e, (q, c)) in self.forces.iter().zip(&self.contact_forces).enumerate() {
-            for k in 0..12 {
-                f[6 * e + k] += q[k] + c[k];
+            for (f, (q, c)) in f[6 * e..6 * e + 12].iter_mut().zip(q.iter().zip(c)) {
+                *f += q + c;
             }
         }
         self.ends::<TANGENT>(env, u, w, a, f, m);
         self.turn::<TANGENT>(env, w, a, f, m);
         self.account_for_far_end(env, u, w);
-    }
-
-    /// Elements that the water's surface crosses: fluid forces on the wet pieces, each with its own three points.
-    fn surface<const TANGENT: bool>(&mut self, env: &Environment, u: &[f64], w: &[f64], a: Option<&[f64]>, m: &mut Matrices) {
-        let Some(water) = &self.chain.water else { return };
-        let half = 0.5 * water.diameter;
-        let (forces, tally) = (&mut self.forces, &mut self.tally);
-        for (e, &l) in self.chain.lengths.iter().enumerate() {
-            let (wetness, height) = self.chain.wetness(water, env, u, e);
-            if wetness != Wetness::Partial {
-                continue;
-            }
-            height.wet_pieces(water.waterline - half, water.waterline + half, |from, to| {
-                for (x, weight) in GAUSS3 {
-                    let x = from + (to - from) * x;
-                    let wl = (to - from) * l * weight;
-                    let point = ElementPoint::new(u, w, e, l, x);
-                    let ra = a.map_or([0.0; 3], |a| crate::cable::shape::interpolate(&point.s, &gather(a, e)));
-                    let at = LinePoint {
-                        z: point.u[2] + env.base[2].0[0],
-                        v: std::array::from_fn(|c| point.w[c] + env.base[c].0[1]),
-                        p: point.p,
-                        vp: point.vp,
-                        a: std::array::from_fn(|c| ra[c] + env.base[c].0[2]),
-                        w: point.w,
-                    };
-                    let load = water.load::<TANGENT>(&at, &env.flow);
-                    let (share, dshare) = line_share(at.z, water.waterline, water.diameter);
-                    let s = wl * share;
-                    point.push(&load.f.map(|x| s * x), forces);
-                    let across = dot(&point.w, &point.w) - dot(&point.w, &point.p).powi(2) / dot(&point.p, &point.p);
-                    tally.kinetic += s * 0.5 * water.added_mass * across;
-                    tally.turning += s * load.turning + wl * dshare * at.v[2] * 0.5 * water.added_mass * across;
-                    if TANGENT {
-                        let mut by_r = [[0.0; 3]; 3];
-                        for r in 0..3 {
-                            by_r[r][2] = s * load.dz[r] + wl * dshare * load.f[r];
-                        }
-                        let times = |b: &Mat3<f64>| b.map(|row| row.map(|x| s * x));
-                        point.couple(Some(&by_r), Some(&times(&load.dp)), Some(&times(&load.dv)), Some(&times(&load.mass)), m);
-                    }
-                }
-            });
-        }
     }
 
     /// The body at the last node and the clamp at the first.

@@ -147,6 +147,20 @@ impl Chain {
         (w, height)
     }
 
+    /// Puts the elements that the water's surface crosses into `found`.
+    pub fn crossed(&self, water: &LineInWater, env: &Environment, u: &[f64], found: &mut Vec<usize>) {
+        found.clear();
+        let z = env.base[2].0[0];
+        let (full, dry) = (water.full() - z, water.dry() - z);
+        for (e, l) in self.lengths.iter().enumerate() {
+            let x = &u[6 * e..6 * e + 12];
+            let (low, high) = bounds(x[2], x[5] * l, x[8], x[11] * l);
+            if high > full && low < dry {
+                found.push(e);
+            }
+        }
+    }
+
     /// Overwrites `forces` (12 per element: all that acts on the element's own slots, inertia included) and, with `TANGENT`, adds M, D and K of
     /// F − M(u) a to `matrices`. `a`: acceleration relative to the first node; without it no inertia relative to the first node. `axially`:
     /// see there.
