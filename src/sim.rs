@@ -107,6 +107,8 @@ struct Work {
     mid: [Vec<f64>; 3],
     /// Factors of the mass matrix where it does not depend on the shape.
     constant_mass: Option<BlockTridiagonal>,
+    /// The worst error, in tolerable ones, that the last communication step accepted for want of time.
+    overrun: f64,
     /// The outputs at the begin of a step, and where the tangent was taken.
     outputs: Vec<f64>,
     tangent: Vec<f64>,
@@ -146,6 +148,7 @@ impl Simulation {
                 force: zeros(),
                 mid: [zeros(), zeros(), zeros()],
                 constant_mass,
+                overrun: 0.0,
                 outputs: Vec::new(),
                 tangent: Vec::new(),
             },
@@ -312,7 +315,14 @@ impl Simulation {
         [solver.steps, solver.rejected, solver.iterations] = s.counts;
         solver.energy_error = s.ledger.error();
         let status = &mut self.outputs.status;
-        if solver.energy_error > DEGRADED {
+        if self.work.overrun > 0.0 {
+            status.code = 1;
+            status.message = format!(
+                "in real time: the {} sub-steps of solver.tries_max did not suffice, errors of up to {:.1e} times solver.tolerance were \
+                 accepted; more of them, a shorter communication step or fewer elements would help",
+                self.scene.solver.tries_max, self.work.overrun
+            );
+        } else if solver.energy_error > DEGRADED {
             status.code = 1;
             status.message = format!(
                 "energy and work disagree by {:.1e} of the work done; a smaller solver.tolerance or more elements would help",
@@ -381,12 +391,18 @@ impl Simulation {
     fn integrate(&mut self, end: f64) -> Result<(), String> {
         let solver = self.scene.solver;
         let mut taken = 0;
+        // Tries left of this communication step, in real time.
+        let (real_time, mut left) = (solver.tries_max > 0, solver.tries_max);
+        self.work.overrun = 0.0;
         while self.state.time < end {
             let s = &mut self.state;
             let k = &mut self.work;
             let remaining = end - s.time;
             // Equal parts of what remains, none longer than the error control wants (a hundredth more saves a sliver).
-            let parts = (remaining / (1.01 * s.step.min(solver.step_max))).ceil().max(1.0);
+            let mut parts = (remaining / (1.01 * s.step.min(solver.step_max))).ceil().max(1.0);
+            if real_time {
+                parts = parts.min(left as f64);
+            }
             let mut h = remaining / parts;
             self.method.begin(&mut self.system, s.time, [&s.u, &s.w, &s.a], &mut k.force);
             s.ledger.reach(&self.system.tally, &s.w, &k.force);
@@ -404,6 +420,15 @@ impl Simulation {
                 };
                 let order = self.method.estimate_order() as f64;
                 let factor = (0.85 * error.powf(-1.0 / order)).clamp(0.2, 5.0);
+                // The tries that are left must reach the end: with no room for shorter ones this one must do.
+                left = left.saturating_sub(1);
+                let shortest = if left > 0 { remaining / left as f64 } else { f64::INFINITY };
+                if real_time && error > 1.0 && error.is_finite() && h <= 1.001 * shortest {
+                    k.overrun = k.overrun.max(error);
+                    s.last = [0.0; 2];
+                    s.step = h * factor;
+                    break;
+                }
                 if error <= 1.0 {
                     // Gustafsson's predictive control (Hairer & Wanner, IV.8): what the error did last it will do again.
                     let [h0, e0] = s.last;
@@ -417,8 +442,11 @@ impl Simulation {
                 s.counts[1] += 1;
                 self.system.rewind();
                 h *= factor.min(0.9);
+                if real_time && left > 0 {
+                    h = h.max(shortest);
+                }
                 s.step = h;
-                if h < solver.step_min {
+                if h < solver.step_min || real_time && left == 0 {
                     let node = match trial {
                         Trial::Singular(row) => row,
                         Trial::Error(_) | Trial::Stalled => self.worst_node(),

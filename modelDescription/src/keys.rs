@@ -390,6 +390,7 @@ pub static KEYS: &[Key] = &[
     key(1172, "solver.step_max", Real(&u::DURATION, Positive), real(0.1), "Greatest sub-step"),
     key(1173, "solver.step_min", Real(&u::DURATION, Positive), real(1e-9), "Smallest sub-step, below which a step has failed"),
     key(1174, "solver.steps_max", Integer(1, MAX), Default(Constant::Integer(100_000)), "Greatest number of sub-steps in one communication step"),
+    key(1175, "solver.tries_max", Integer(0, MAX), Default(Constant::Integer(0)), "Real time: greatest number of sub-steps tried in one communication step; where they do not suffice for the tolerance the last ones are as long as must be, and status.code is 1. 0: no limit. Needs the method rodas4"),
 
     key(1180, "outputs.points", Integer(0, 10_000), Default(Constant::Integer(0)), "Number of points of the cable among the outputs, for drawing").structural(),
 ];

@@ -350,6 +350,8 @@ pub struct Solver {
     pub step_min: f64,
     /// Greatest number of sub-steps in one communication step.
     pub steps_max: usize,
+    /// Greatest number of sub-steps tried in one communication step, whatever the error (real time); 0 is no limit.
+    pub tries_max: usize,
 }
 
 /// Time integrators.

@@ -26,6 +26,14 @@ pub(super) fn check(tree: &Table, problems: &mut Problems) {
     {
         problems.add_once("solver.step_min", format!("found {least}; expected at most solver.step_max = {greatest} s"));
     }
+    if let (Some(tries), Some(method)) = (get(tree, "solver.tries_max").and_then(Value::as_integer), string(tree, "solver.method"))
+        && tries > 0
+        && method != "rodas4"
+    {
+        let message =
+            format!("found {tries} with the method \"{method}\"; expected 0, or the method rodas4, whose work is known beforehand");
+        problems.add_once("solver.tries_max", message);
+    }
     if let (Some(gravity), Some(inertia)) = (real(tree, "load.length_gravity"), real(tree, "load.length_inertia"))
         && gravity > inertia
     {

@@ -125,7 +125,7 @@ fn exact_defaults_of_the_smallest_scene() {
     assert_eq!((scene.cable.compression, scene.cable.strain), (Compression::None, Strain::Engineering));
     assert_eq!(scene.cable.damping, Damping::KelvinVoigt { axial: 0.0, bending: 0.0, in_slack: true });
     assert_eq!((scene.anchor, scene.initial, scene.points), (Some(Vector3::zeros()), Initial::Equilibrium, 0));
-    let solver = Solver { method: Method::Rodas4, tolerance: 1e-3, step_max: 0.1, step_min: 1e-9, steps_max: 100_000 };
+    let solver = Solver { method: Method::Rodas4, tolerance: 1e-3, step_max: 0.1, step_min: 1e-9, steps_max: 100_000, tries_max: 0 };
     assert_eq!(scene.solver, solver);
 }
 

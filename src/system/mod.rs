@@ -34,7 +34,7 @@ use crate::hydro::lump::LumpInWater;
 use crate::hydro::turbulence::Turbulence;
 use crate::integrator::{Problem, Stage};
 use crate::math::jet::Jet;
-use crate::math::lanes::{Mat3, Vec3, add_identity, add_outer, dot};
+use crate::math::lanes::{Vec3, add_identity, add_outer, dot};
 use crate::scene::Scene;
 use crate::ship::ShipDrive;
 use crate::sim::Channel;

@@ -58,6 +58,7 @@ fn exact_variables_are_well_formed() {
         "fluid.current.profile[1,2]",
         "fluid.drag.amplification",
         "solver.steps_max",
+        "solver.tries_max",
         "status.message",
         "winch.initial_angle",
     ] {

@@ -12,6 +12,7 @@ mod moving_pulley;
 mod must_hold;
 mod noise;
 mod numerics;
+mod pace;
 mod page;
 mod peers;
 mod pulley;

@@ -19,6 +19,10 @@ pub struct Args {
     /// Only the scenes whose name contains this; prints the table and writes nothing
     #[arg(long, value_name = "NAME")]
     only: Option<String>,
+    /// Instead: how long each communication step of `overboard` takes over so many seconds in a seaway, with and without solver.tries_max;
+    /// prints a table and writes nothing
+    #[arg(long, value_name = "SECONDS", conflicts_with = "only")]
+    pace: Option<f64>,
 }
 
 const METHODS: [&str; 4] = ["rodas4", "tr_bdf2", "esdirk3", "esdirk4"];
@@ -206,6 +210,9 @@ fn section(case: &Case, points: &[Point]) -> Section {
 /// # Errors
 /// A build that fails, a scene that does not run, a folder that cannot be written.
 pub fn bench(args: Args) -> Result<()> {
+    if let Some(seconds) = args.pace {
+        return super::pace::pace(seconds);
+    }
     let all = cases()?;
     let chosen: Vec<&Case> = all.iter().filter(|c| args.only.as_ref().is_none_or(|only| c.name.contains(only.as_str()))).collect();
     if chosen.is_empty() {
