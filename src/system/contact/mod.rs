@@ -7,7 +7,7 @@
 mod press;
 
 use super::environment::Environment;
-use super::matrices::{Matrices, element_block};
+use super::matrices::Matrices;
 use super::{System, gather};
 use crate::cable::shape;
 use crate::contact::arcs::{Arc, Cubic, Samples, Touch};
@@ -190,7 +190,7 @@ impl System {
                     }
                     if let Some(k) = turning.coupling {
                         let coupling = &mut m.couplings[k];
-                        m.damping.diagonal[coupling.at / 6][coupling.at % 6][coupling.at % 6] += tangent.spin_corner;
+                        m.damping.add(coupling.at / 6, coupling.at / 6, coupling.at % 6, coupling.at % 6, tangent.spin_corner);
                         for (to, from) in [
                             (&mut coupling.damping_column, &tangent.spin_column),
                             (&mut coupling.damping_row, &tangent.moment_damping),
@@ -320,17 +320,18 @@ fn subtract_products(m: &mut [[f64; 12]; 12], w: f64, s: &[f64; 4], b: &Mat3<f64
 }
 
 /// m += rᵀ k r, block by block of three.
-fn add_turned(m: &mut crate::linalg::BlockTridiagonal, e: usize, r: &Mat3<f64>, k: &[[f64; 12]; 12]) {
+fn add_turned(m: &mut crate::linalg::Patches, e: usize, r: &Mat3<f64>, k: &[[f64; 12]; 12]) {
+    let mut turned = [[0.0; 12]; 12];
     for i in 0..4 {
         for j in 0..4 {
             let left: Mat3<f64> =
                 std::array::from_fn(|a| std::array::from_fn(|c| (0..3).map(|b| k[3 * i + a][3 * j + b] * r[b][c]).sum::<f64>()));
-            let block = element_block(m, e, i, j);
             for a in 0..3 {
                 for c in 0..3 {
-                    block[3 * (i % 2) + a][3 * (j % 2) + c] += (0..3).map(|b| r[b][a] * left[b][c]).sum::<f64>();
+                    turned[3 * i + a][3 * j + c] = (0..3).map(|b| r[b][a] * left[b][c]).sum::<f64>();
                 }
             }
         }
     }
+    m.add_pair(e, &turned);
 }
