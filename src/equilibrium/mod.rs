@@ -16,9 +16,9 @@ pub use layout::lay_out;
 pub use span::{follow, glide, lay_between, meet};
 
 use crate::integrator::Problem;
+use crate::linalg::BlockTridiagonal;
 use crate::math::lanes::{axpy, mat_vec};
 use crate::system::contact::SurfaceFrame;
-use crate::linalg::BlockTridiagonal;
 use crate::system::{Matrices, System};
 
 /// Iterations before giving up.

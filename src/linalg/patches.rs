@@ -40,14 +40,19 @@ impl Patches {
     /// Adds a matrix of the unknowns of block rows `e` and `e` + 1, so one of element `e`.
     #[inline]
     pub fn add_pair(&mut self, e: usize, m: &[[f64; 2 * BLOCK]; 2 * BLOCK]) {
+        for c in 0..2 * BLOCK {
+            self.add_pair_column(e, c, 1.0, &m.map(|row| row[c]));
+        }
+    }
+
+    /// Adds s times column `c` of such a matrix.
+    #[inline]
+    pub fn add_pair_column(&mut self, e: usize, c: usize, s: f64, x: &[f64; 2 * BLOCK]) {
         for i in 0..2 {
             self.used[e + i] = true;
-            let row = &mut self.rows[e + i];
-            for c in 0..2 * BLOCK {
-                let column = &mut row[BLOCK * (1 - i) + c];
-                for r in 0..BLOCK {
-                    column[r] += m[BLOCK * i + r][c];
-                }
+            let column = &mut self.rows[e + i][BLOCK * (1 - i) + c];
+            for r in 0..BLOCK {
+                column[r] += s * x[BLOCK * i + r];
             }
         }
     }

@@ -145,14 +145,11 @@ impl Matrices {
 /// m −= Σ_ij row_i col_j b over the 12×12 of element `e`.
 #[inline(always)]
 pub fn subtract_outer(m: &mut Patches, e: usize, row: &[f64; 4], col: &[f64; 4], b: &Mat3<f64>) {
-    for i in 0..4 {
+    // Whole columns at a time.
+    for c in 0..3 {
+        let column = std::array::from_fn(|k| row[k / 3] * b[k % 3][c]);
         for j in 0..4 {
-            let f = row[i] * col[j];
-            for r in 0..3 {
-                for c in 0..3 {
-                    m.add(e + i / 2, e + j / 2, 3 * (i % 2) + r, 3 * (j % 2) + c, -(f * b[r][c]));
-                }
-            }
+            m.add_pair_column(e, 3 * j + c, -col[j], &column);
         }
     }
 }
