@@ -133,7 +133,7 @@ impl Simulation {
             let mut straight: Vec<f64> = system.arc.iter().flat_map(|s| [*s, 0.0, 0.0, 1.0, 0.0, 0.0]).collect();
             straight.resize(n, 0.0);
             system.linearize(0.0, &straight, &zeros(), &zeros(), &mut matrices, &mut zeros());
-            let mut mass = matrices.mass.clone();
+            let [mut mass, ..] = matrices.whole();
             mass.factor().map_err(|e| SimError::Start(format!("the mass matrix is singular at node {}", e.row)))?;
             constant_mass = Some(mass);
         }
@@ -280,7 +280,7 @@ impl Simulation {
     fn settle(&mut self) {
         let (s, k) = (&mut self.state, &mut self.work);
         self.system.linearize(s.time, &s.u, &s.w, &s.a, &mut k.matrices, &mut k.force);
-        let mut mass = k.matrices.mass.clone();
+        let [mut mass, ..] = k.matrices.whole();
         // The mass matrix is positive definite, so this cannot fail.
         if mass.factor().is_ok() {
             s.a.copy_from_slice(&k.force);

@@ -45,8 +45,10 @@ fn frozen_sub_steps_of_built_in_scenes() {
     let still = |_: f64| Inputs::default();
     let runs = [
         ("flume", tried("flume", 0.01, 10.0, in_waves), 2645),
-        ("pulley_1", tried("pulley_1", 0.01, 0.5, still), 555),
-        ("pulley_3", tried("pulley_3", 0.01, 0.5, still), 786),
+        // A rope that sinks 0.1 µm into a V groove without damping wobbles sideways from rounding alone: with forces and tangent that agreed
+        // to 1e-15 three orders of summation took 542, 579 and 611 sub-steps.
+        ("pulley_1", tried("pulley_1", 0.01, 0.5, still), 611),
+        ("pulley_3", tried("pulley_3", 0.01, 0.5, still), 792),
     ];
     for (name, (steps, rejected), _) in &runs {
         println!("{name}: {steps} sub-steps, {rejected} rejected, {} tried", steps + rejected);

@@ -51,8 +51,8 @@ fn exact_no_step_tries_more_than_allowed_and_an_overrun_is_told() {
     }
     // Enough but at the snaps, whose instants then shift: a measured 3 %, with room for other roundings.
     assert!(before < 0.05, "{before:.1e}");
-    // A bound that is never met changes nothing, to the bit.
-    assert_eq!(ride(most as usize * 2).0, truth);
+    // A bound that is far off changes nothing, to the bit.
+    assert!(ride(100_000).0 == truth, "a bound that is never met has changed the run");
 }
 
 #[test]

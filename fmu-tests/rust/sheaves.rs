@@ -188,6 +188,7 @@ fn exact_tangent_in_and_at_the_edge_of_contact() {
         system.force(0.0, u, w, None, &mut f);
         system.contact_forces.concat()
     };
+    let ([_, with_d, with_k], [_, without_d, without_k]) = (with.whole(), without.whole());
     let mut worst = 0.0f64;
     // Single coordinates of every touched element, the ones where contact begins and ends included.
     for e in touched {
@@ -204,7 +205,7 @@ fn exact_tangent_in_and_at_the_edge_of_contact() {
                 let mut v = vec![0.0; n];
                 v[k] = 1.0;
                 let mut exact = vec![0.0; n];
-                let (a, b) = [(&with.stiffness, &without.stiffness), (&with.damping, &without.damping)][which];
+                let (a, b) = [(&with_k, &without_k), (&with_d, &without_d)][which];
                 a.multiply_add(-1.0, &v, &mut exact);
                 b.multiply_add(1.0, &v, &mut exact);
                 exact[..3].fill(0.0); // the pinned node has no rows

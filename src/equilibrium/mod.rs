@@ -16,6 +16,7 @@ pub use layout::lay_out;
 pub use span::{follow, glide, lay_between, meet};
 
 use crate::integrator::Problem;
+use crate::linalg::BlockTridiagonal;
 use crate::math::lanes::{axpy, mat_vec};
 use crate::system::contact::SurfaceFrame;
 use crate::system::{Matrices, System};
@@ -95,7 +96,7 @@ fn iterate(system: &mut System, t: f64, u: &mut [f64], load: f64, tolerance: f64
     let zero = vec![0.0; n];
     let mut m = Matrices::zeros(n / 6);
     let (mut f, mut trial, mut trial_f, mut step) = (zero.clone(), zero.clone(), zero.clone(), zero.clone());
-    let mut a = m.stiffness.clone();
+    let mut a = BlockTridiagonal::zeros(n / 6);
     let shortest = system.chain.lengths.iter().copied().fold(f64::INFINITY, f64::min);
     // Slope rows are moments: over an element length they are forces.
     let size = |f: &[f64]| {
@@ -117,7 +118,7 @@ fn iterate(system: &mut System, t: f64, u: &mut [f64], load: f64, tolerance: f64
         }
         let mut accepted = false;
         for _ in 0..40 {
-            a.combine(&m.mass, &m.damping, &m.stiffness, delta);
+            m.sum([1.0, delta, delta * delta], &mut a);
             let good = a.factor().is_ok();
             if good {
                 for (s, f) in step.iter_mut().zip(&f) {

@@ -2,6 +2,7 @@
 
 use super::layout::Way;
 use crate::integrator::Problem;
+use crate::linalg::BlockTridiagonal;
 use crate::system::{Matrices, System};
 use nalgebra::Vector3;
 
@@ -173,9 +174,9 @@ pub fn follow(system: &mut System, t: f64, u: &[f64], w: &mut [f64]) {
     system.linearize(t, u, &zero, &zero, &mut m, &mut rest);
     system.frozen = false;
     rest.fill(0.0);
-    m.stiffness.multiply_add(-SLOWLY * SLOWLY, w, &mut rest);
-    let mut a = m.stiffness.clone();
-    a.combine(&m.mass, &m.damping, &m.stiffness, SLOWLY);
+    m.multiply_add([None, None, Some((-SLOWLY * SLOWLY, w))], &mut rest);
+    let mut a = BlockTridiagonal::zeros(u.len() / 6);
+    m.sum([1.0, SLOWLY, SLOWLY * SLOWLY], &mut a);
     if a.factor().is_ok() {
         a.solve(&mut rest);
         w.iter_mut().zip(&rest).for_each(|(w, r)| *w += r);

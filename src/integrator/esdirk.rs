@@ -11,7 +11,7 @@ use super::newton::{Outcome, Progress};
 use super::tableau::Tableau;
 use super::vectors::{add, blend, dot};
 use super::{Integrator, Problem, Trial};
-use crate::linalg::{Bordered, Columns};
+use crate::linalg::Bordered;
 use crate::system::Matrices;
 
 /// A step's length may change so much before the matrix is factored anew.
@@ -26,7 +26,6 @@ pub struct Esdirk {
     /// Of M + g D + g² K.
     factors: Bordered,
     matrices: Matrices,
-    mass: Columns,
     /// Where the tangent was taken: u, w, a.
     origin: [Vec<f64>; 3],
     /// g of the factors, s; 0 before the first.
@@ -55,7 +54,6 @@ impl Esdirk {
             tableau,
             factors: Bordered::zeros(size / 6, at),
             matrices: Matrices::zeros(size / 6),
-            mass: Columns::zeros(size / 6),
             origin: [zeros(), zeros(), zeros()],
             g: 0.0,
             rate: 0.0,
@@ -76,7 +74,6 @@ impl Esdirk {
             origin.copy_from_slice(from);
         }
         problem.linearize(t, from[0], from[1], from[2], &mut self.matrices, &mut self.residual);
-        self.mass.take(&self.matrices.mass);
         self.counts[1] += 1;
         (self.g, self.rate) = (0.0, 0.0);
     }
@@ -182,10 +179,10 @@ impl Integrator for Esdirk {
         // J⁻¹M takes from the estimate what the method damps anyway (Hosea & Shampine, section 4).
         blend(&mut self.residual, None, h, self.tableau.estimate, &self.a);
         self.error.fill(0.0);
-        self.mass.multiply_add(1.0, &self.residual, &mut self.error);
+        self.matrices.multiply_add([Some((1.0, &self.residual)), None, None], &mut self.error);
         self.factors.solve(&mut self.error);
         self.residual.fill(0.0);
-        self.mass.multiply_add(1.0, &self.error, &mut self.residual);
+        self.matrices.multiply_add([Some((1.0, &self.error)), None, None], &mut self.residual);
         Trial::Error(problem.error_size(&self.error, &self.residual))
     }
 
@@ -215,7 +212,6 @@ impl Integrator for Esdirk {
         }
         let [u, w, a] = &self.origin;
         problem.relinearize(u, w, a, &mut self.matrices, &mut self.residual);
-        self.mass.take(&self.matrices.mass);
         // Only a forged state can be singular here; the next step then finds no factors and begins anew.
         let g = self.g;
         let _ = self.refactor(g);

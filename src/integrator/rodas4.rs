@@ -10,9 +10,9 @@
 //! Where M depends on u, the accelerations a join as algebraic unknowns of 0 = F − M(u) a; eliminating them leaves the same matrix and the
 //! extra terms −(M(u_i) − M) a_i, with increments A_i = W_i/g − a_i − Σ c_ij W_j / h.
 
-use super::vectors::{add, blend, dot};
+use super::vectors::{add, blend};
 use super::{Integrator, MOST_STAGES, Problem, Stage, Trial};
-use crate::linalg::{Bordered, Columns};
+use crate::linalg::Bordered;
 use crate::system::Matrices;
 
 const STAGES: usize = 6;
@@ -50,9 +50,6 @@ pub struct Rodas4 {
     factors: Bordered,
     /// The tangent where the step begins.
     matrices: Matrices,
-    /// K and M for the stages' products.
-    stiffness: Columns,
-    mass: Columns,
     /// P_i, W_i, A_i.
     p: Vec<Vec<f64>>,
     w: Vec<Vec<f64>>,
@@ -76,8 +73,6 @@ impl Rodas4 {
         Self {
             factors: Bordered::zeros(size / 6, at),
             matrices: Matrices::zeros(size / 6),
-            stiffness: Columns::zeros(size / 6),
-            mass: Columns::zeros(size / 6),
             p: zeros(),
             w: zeros(),
             a: zeros(),
@@ -120,8 +115,6 @@ impl Integrator for Rodas4 {
 
     fn begin<P: Problem>(&mut self, problem: &mut P, t: f64, from: [&[f64]; 3], force: &mut [f64]) {
         problem.linearize(t, from[0], from[1], from[2], &mut self.matrices, force);
-        self.stiffness.take(&self.matrices.stiffness);
-        self.mass.take(&self.matrices.mass);
         self.counts[1] += 1;
     }
 
@@ -147,20 +140,14 @@ impl Integrator for Rodas4 {
             if driven && GAMMA_I[i] != 0.0 {
                 add(&mut self.rhs, GAMMA_I[i] * h, &self.rate);
             }
-            // s_i, then −g K s_i.
+            // s_i, then M (Σ c_ij W_j / h + a_i) − g K s_i.
             blend(&mut self.shift, Some(&self.stage[1]), 1.0 / h, C[i], &self.p);
             blend(&mut self.scratch, None, 1.0 / h, C[i], &self.w);
-            self.stiffness.multiply_add(-g, &self.shift, &mut self.rhs);
-            for coupling in &self.matrices.couplings {
-                self.rhs[coupling.at] -= g * dot(&coupling.stiffness_row, &self.shift);
-            }
-            // M (Σ c_ij W_j / h + a_i).
             if varies {
                 add(&mut self.scratch, 1.0, &self.stage[2]);
             }
-            if i > 0 {
-                self.mass.multiply_add(1.0, &self.scratch, &mut self.rhs);
-            }
+            let inertia = (i > 0).then_some((1.0, &self.scratch[..]));
+            self.matrices.multiply_add([inertia, None, Some((-g, &self.shift))], &mut self.rhs);
             let w = &mut self.w[i];
             for (w, r) in w.iter_mut().zip(&self.rhs) {
                 *w = g * r;
@@ -184,7 +171,7 @@ impl Integrator for Rodas4 {
             add(&mut self.stage[2], 1.0, &self.a[STAGES - 1]);
         }
         self.scratch.fill(0.0);
-        self.mass.multiply_add(1.0, &self.w[STAGES - 1], &mut self.scratch);
+        self.matrices.multiply_add([Some((1.0, &self.w[STAGES - 1])), None, None], &mut self.scratch);
         let finite = self.stage[0].iter().chain(&self.stage[1]).all(|x| x.is_finite());
         Trial::Error(if finite { problem.error_size(&self.w[STAGES - 1], &self.scratch) } else { f64::NAN })
     }

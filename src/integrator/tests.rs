@@ -39,11 +39,12 @@ impl Problem for Oscillator {
     }
     fn linearize(&mut self, t: f64, u: &[f64], w: &[f64], a: &[f64], m: &mut Matrices, f: &mut [f64]) {
         self.force(t, u, w, None, f);
+        m.clear(std::iter::empty());
         for i in 0..6 {
-            m.mass.diagonal[0][i][i] = self.mass(u[i]);
-            m.damping.diagonal[0][i][i] = 0.3 + 0.2 * u[i];
+            m.mass.add(0, 0, i, i, self.mass(u[i]));
+            m.damping.add(0, 0, i, i, 0.3 + 0.2 * u[i]);
             let turn = if self.varying { 2.0 * u[i] * a[i] } else { 0.0 };
-            m.stiffness.diagonal[0][i][i] = 4.0 + 3.0 * u[i] * u[i] + 0.2 * w[i] + turn;
+            m.stiffness.add(0, 0, i, i, 4.0 + 3.0 * u[i] * u[i] + 0.2 * w[i] + turn);
         }
     }
     fn time_derivative(&mut self, t: f64, _: f64, u: &[f64], w: &[f64], force: &[f64], f: &mut [f64]) -> bool {

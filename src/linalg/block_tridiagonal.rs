@@ -50,50 +50,41 @@ impl BlockTridiagonal {
         self.upper.fill(ZERO);
     }
 
-    /// Adds `x` at (6 i + a, 6 j + b), |i − j| ≤ 1.
+    /// Sets a block row to zero.
+    pub fn clear_row(&mut self, i: usize) {
+        (self.lower[i], self.diagonal[i], self.upper[i]) = (ZERO, ZERO, ZERO);
+    }
+
+    /// The block at (i, j).
+    ///
+    /// # Panics
+    /// Outside the band, |i − j| > 1.
     #[inline]
-    pub fn add(&mut self, i: usize, j: usize, a: usize, b: usize, x: f64) {
-        let block = match j as isize - i as isize {
+    pub fn block(&mut self, i: usize, j: usize) -> &mut Block {
+        match j as isize - i as isize {
             -1 => &mut self.lower[i],
             0 => &mut self.diagonal[i],
             1 => &mut self.upper[i],
-            _ => return debug_assert!(false, "outside the band"),
-        };
-        block[a][b] += x;
-    }
-
-    /// self = m + g d + g² k.
-    pub fn combine(&mut self, m: &Self, d: &Self, k: &Self, g: f64) {
-        for (o, [m, d, k]) in [
-            (&mut self.lower, [&m.lower, &d.lower, &k.lower]),
-            (&mut self.diagonal, [&m.diagonal, &d.diagonal, &k.diagonal]),
-            (&mut self.upper, [&m.upper, &d.upper, &k.upper]),
-        ] {
-            widest(Combination { o, m, d, k, g });
+            _ => panic!("({i}, {j}) is outside the band"),
         }
     }
 
     /// y += s A x.
     pub fn multiply_add(&self, s: f64, x: &[f64], y: &mut [f64]) {
-        let n = self.len();
-        for i in 0..n {
-            let mut acc = [0.0; BLOCK];
-            if i > 0 {
-                block_vec(&self.lower[i], &x[BLOCK * (i - 1)..BLOCK * i], &mut acc);
-            }
-            block_vec(&self.diagonal[i], &x[BLOCK * i..BLOCK * (i + 1)], &mut acc);
-            if i + 1 < n {
-                block_vec(&self.upper[i], &x[BLOCK * (i + 1)..BLOCK * (i + 2)], &mut acc);
-            }
-            for (y, a) in y[BLOCK * i..BLOCK * (i + 1)].iter_mut().zip(acc) {
-                *y += s * a;
+        let (x, y) = (x.as_chunks::<BLOCK>().0, y.as_chunks_mut::<BLOCK>().0);
+        let none = [0.0; BLOCK];
+        for i in 0..self.len() {
+            let (before, after) = (if i > 0 { &x[i - 1] } else { &none }, x.get(i + 1).unwrap_or(&none));
+            let (l, d, u) = (&self.lower[i], &self.diagonal[i], &self.upper[i]);
+            for r in 0..BLOCK {
+                y[i][r] += s * (0..BLOCK).map(|c| l[r][c] * before[c] + d[r][c] * x[i][c] + u[r][c] * after[c]).sum::<f64>();
             }
         }
     }
 
-    /// Replaces the matrix A by factors of A = (D + L) (1 + D⁻¹U), block by block: `diagonal` by the LU factors of the pivots D,
-    /// `lower` and `upper` by the transposes of D⁻¹L and D⁻¹U. So a solution's chain from node to node holds one product per node and no
-    /// triangular solution.
+    /// Replaces the matrix A by factors of A = (D + L) (1 + D⁻¹U), block by block: `diagonal` by the transposed inverses of the pivots D,
+    /// `lower` and `upper` by the transposes of D⁻¹L and D⁻¹U. So a solution is nothing but products, of which its chain from node to node
+    /// holds one per node.
     /// No pivoting: mass keeps the pivots away from zero at the step sizes in use, and a vanishing one is reported.
     ///
     /// # Errors
@@ -108,28 +99,6 @@ impl BlockTridiagonal {
     }
 }
 
-struct Combination<'a> {
-    o: &'a mut [Block],
-    m: &'a [Block],
-    d: &'a [Block],
-    k: &'a [Block],
-    g: f64,
-}
-
-impl Kernel for Combination<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let (g, gg) = (self.g, self.g * self.g);
-        let (m, d, k) = (self.m.as_flattened().as_flattened(), self.d.as_flattened().as_flattened(), self.k.as_flattened().as_flattened());
-        let o = self.o.as_flattened_mut().as_flattened_mut();
-        for (((o, m), d), k) in o.iter_mut().zip(m).zip(d).zip(k) {
-            *o = m + g * d + gg * k;
-        }
-    }
-}
-
 struct Elimination<'a>(&'a mut BlockTridiagonal);
 
 impl Kernel for Elimination<'_> {
@@ -138,16 +107,19 @@ impl Kernel for Elimination<'_> {
     #[inline(always)]
     fn run(self) -> Self::Output {
         let BlockTridiagonal { lower, diagonal, upper } = self.0;
-        // D⁻¹ (L | U).
-        let mut both = [[0.0; 2 * BLOCK]; BLOCK];
+        // D⁻¹ (L | U), and (L | U).
+        let (mut both, mut blocks) = ([[0.0; 2 * BLOCK]; BLOCK], [[0.0; 2 * BLOCK]; BLOCK]);
         for i in 0..diagonal.len() {
             let d = &mut diagonal[i];
+            for r in 0..BLOCK {
+                blocks[r][..BLOCK].copy_from_slice(&lower[i][r]);
+                blocks[r][BLOCK..].copy_from_slice(&upper[i][r]);
+            }
             if i > 0 {
-                let l = &lower[i];
                 for r in 0..BLOCK {
                     let mut row = d[r];
                     for k in 0..BLOCK {
-                        let f = l[r][k];
+                        let f = blocks[r][k];
                         for c in 0..BLOCK {
                             row[c] -= f * both[k][BLOCK + c];
                         }
@@ -155,14 +127,21 @@ impl Kernel for Elimination<'_> {
                     d[r] = row;
                 }
             }
-            lu(d).map_err(|()| SingularBlock { row: i })?;
+            invert(d).map_err(|()| SingularBlock { row: i })?;
             for r in 0..BLOCK {
-                both[r][..BLOCK].copy_from_slice(&lower[i][r]);
-                both[r][BLOCK..].copy_from_slice(&upper[i][r]);
+                let mut row = [0.0; 2 * BLOCK];
+                for k in 0..BLOCK {
+                    let f = d[r][k];
+                    for c in 0..2 * BLOCK {
+                        row[c] += f * blocks[k][c];
+                    }
+                }
+                both[r] = row;
             }
-            lu_solve(d, &mut both);
+            let inverse = *d;
             for r in 0..BLOCK {
                 for c in 0..BLOCK {
+                    d[c][r] = inverse[r][c];
                     lower[i][c][r] = both[r][c];
                     upper[i][c][r] = both[r][BLOCK + c];
                 }
@@ -185,88 +164,63 @@ impl Kernel for Substitution<'_> {
         let Self { factors, b } = self;
         let (b, _) = b.as_chunks_mut::<BLOCK>();
         for i in 0..b.len() {
-            lu_solve(&factors.diagonal[i], b[i].as_chunks_mut::<1>().0);
-            if i > 0 {
-                b[i] = minus_product(&b[i], &factors.lower[i], &b[i - 1]);
-            }
+            let own = transposed_times(&factors.diagonal[i], &b[i]);
+            b[i] = if i > 0 { difference(&own, &transposed_times(&factors.lower[i], &b[i - 1])) } else { own };
         }
         for i in (1..b.len()).rev() {
-            b[i - 1] = minus_product(&b[i - 1], &factors.upper[i - 1], &b[i]);
+            b[i - 1] = difference(&b[i - 1], &transposed_times(&factors.upper[i - 1], &b[i]));
         }
     }
 }
 
-/// y += A x.
+/// Aᵀ x.
 #[inline(always)]
-fn block_vec(a: &Block, x: &[f64], y: &mut [f64; BLOCK]) {
+fn transposed_times(a: &Block, x: &[f64; BLOCK]) -> [f64; BLOCK] {
+    let mut out = [0.0; BLOCK];
     for r in 0..BLOCK {
-        let mut s = 0.0;
-        for c in 0..BLOCK {
-            s += a[r][c] * x[c];
-        }
-        y[r] += s;
-    }
-}
-
-/// y − Aᵀ x.
-#[inline(always)]
-fn minus_product(y: &[f64; BLOCK], a: &Block, x: &[f64; BLOCK]) -> [f64; BLOCK] {
-    let mut out = *y;
-    for r in 0..BLOCK {
+        // Three sums, so that none waits long for another.
         let (p, q, s) = (a[0][r] * x[0] + a[1][r] * x[1], a[2][r] * x[2] + a[3][r] * x[3], a[4][r] * x[4] + a[5][r] * x[5]);
-        out[r] -= (p + q) + s;
+        out[r] = (p + q) + s;
     }
     out
 }
 
-/// y −= f x.
+/// x − y.
 #[inline(always)]
-fn subtract<const N: usize>(y: &mut [f64; N], f: f64, x: &[f64; N]) {
-    for c in 0..N {
-        y[c] -= f * x[c];
-    }
+fn difference(x: &[f64; BLOCK], y: &[f64; BLOCK]) -> [f64; BLOCK] {
+    std::array::from_fn(|r| x[r] - y[r])
 }
 
-/// In place LU, unit lower triangle; the diagonal keeps the pivots' reciprocals.
+/// Inverse in place by Gauss and Jordan's elimination.
 #[inline(always)]
-fn lu(a: &mut Block) -> Result<(), ()> {
-    for k in 0..BLOCK {
-        let p = a[k][k];
-        let inverse = 1.0 / p;
-        if !(inverse.is_finite() && p != 0.0) {
-            return Err(());
-        }
-        a[k][k] = inverse;
-        for r in k + 1..BLOCK {
-            let f = a[r][k] * inverse;
-            a[r][k] = f;
-            for c in k + 1..BLOCK {
-                a[r][c] -= f * a[k][c];
+fn invert(a: &mut Block) -> Result<(), ()> {
+    let mut x = *a;
+    // Written out, since the compiler does not unroll a loop of this size; and judged at the end, so that nothing waits for it.
+    let pivots = [eliminate::<0>(&mut x), eliminate::<1>(&mut x), eliminate::<2>(&mut x)];
+    let more = [eliminate::<3>(&mut x), eliminate::<4>(&mut x), eliminate::<5>(&mut x)];
+    *a = x;
+    if pivots.iter().chain(&more).all(|p| p.is_finite()) { Ok(()) } else { Err(()) }
+}
+
+/// Step `K` of it; returns the pivot's reciprocal, which is not finite where the matrix is singular.
+#[inline(always)]
+fn eliminate<const K: usize>(a: &mut Block) -> f64 {
+    let inverse = 1.0 / a[K][K];
+    a[K][K] = 1.0;
+    for c in 0..BLOCK {
+        a[K][c] *= inverse;
+    }
+    let row = a[K];
+    for r in 0..BLOCK {
+        if r != K {
+            let f = a[r][K];
+            a[r][K] = 0.0;
+            for c in 0..BLOCK {
+                a[r][c] -= f * row[c];
             }
         }
     }
-    Ok(())
-}
-
-/// x = (LU)⁻¹ x of `N` right-hand sides.
-#[inline(always)]
-fn lu_solve<const N: usize>(a: &Block, x: &mut [[f64; N]]) {
-    for r in 1..BLOCK {
-        let mut y = x[r];
-        for c in 0..r {
-            subtract(&mut y, a[r][c], &x[c]);
-        }
-        x[r] = y;
-    }
-    for r in (0..BLOCK).rev() {
-        let mut y = x[r];
-        for c in r + 1..BLOCK {
-            subtract(&mut y, a[r][c], &x[c]);
-        }
-        for c in 0..N {
-            x[r][c] = y[c] * a[r][r];
-        }
-    }
+    inverse
 }
 
 #[cfg(test)]

@@ -124,7 +124,7 @@ mod tests {
                 let near = (r / 6).abs_diff(c / 6) <= 1;
                 let mut put = |x: f64| dense[(r, c)] = x;
                 if r == c || near && !is_border(r) && !is_border(c) && r < 24 && c < 24 {
-                    a.core.add(r / 6, c / 6, r % 6, c % 6, value(r, c));
+                    a.core.block(r / 6, c / 6)[r % 6][c % 6] += value(r, c);
                     put(value(r, c));
                 } else if is_border(r) && c < 24 {
                     a.border(r - 24).1[c] = value(r, c);
@@ -150,7 +150,7 @@ mod tests {
         // x₀ + x₆ = 0 and x₀ + x₆ = 0 again, beside a unit matrix; with 2 x₀ in the second it can be solved.
         for (row, singular) in [(1.0, true), (2.0, false)] {
             let mut a = Bordered::zeros(2, &[6]);
-            (0..12).for_each(|i| a.core.add(i / 6, i / 6, i % 6, i % 6, 1.0));
+            (0..12).for_each(|i| a.core.block(i / 6, i / 6)[i % 6][i % 6] += 1.0);
             a.border(0).0[0] = 1.0;
             a.border(0).1[0] = row;
             assert_eq!(a.factor().map_err(|e| e.row), if singular { Err(1) } else { Ok(()) });

@@ -2,8 +2,8 @@
 
 mod block_tridiagonal;
 mod bordered;
-mod columns;
+mod patches;
 
 pub use block_tridiagonal::{BLOCK, Block, BlockTridiagonal, SingularBlock};
 pub use bordered::Bordered;
-pub use columns::Columns;
+pub use patches::Patches;

@@ -63,9 +63,10 @@ impl Simulation {
         let (s, k) = (&self.state, &mut self.work);
         self.system.keeps_axial = false;
         self.system.linearize(s.time, &s.u, &s.w, &s.a, &mut k.matrices, &mut below);
+        let [mut mass, ..] = k.matrices.whole();
         // The mass matrix is positive definite, so this cannot fail.
-        if k.matrices.mass.factor().is_ok() {
-            k.matrices.mass.solve(&mut jerk);
+        if mass.factor().is_ok() {
+            mass.solve(&mut jerk);
         }
         jerk
     }

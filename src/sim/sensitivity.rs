@@ -181,7 +181,7 @@ impl Linear {
                 add(u, h * a, &self.w[j]);
             }
             add(u, g, w);
-            m.resist(u, w, &mut self.rhs);
+            m.multiply_add([None, Some((-1.0, w)), Some((-1.0, u))], &mut self.rhs);
             // (M + g D + g² K) δa = δG − D δw − K δu
             self.factors.solve(&mut self.rhs);
             self.a[i].copy_from_slice(&self.rhs);

@@ -93,14 +93,14 @@ impl System {
             add_outer(&mut k, 1.0 / n2, &n, &x);
             add_outer(&mut k, -2.0 * nx / (n2 * n2) + spin * (spring - 2.0 * radial) / n2, &n, &n);
             for r in 0..3 {
-                m.mass.diagonal[node][r][r] += mass;
-                m.mass.upper[node][r][3 + r] += arm;
-                m.mass.diagonal[node + 1][r][r] += 1.0;
-                m.mass.diagonal[node + 1][3 + r][3 + r] += spin;
+                m.mass.add(node, node, r, r, mass);
+                m.mass.add(node, node + 1, r, 3 + r, arm);
+                m.mass.add(node + 1, node + 1, r, r, 1.0);
+                m.mass.add(node + 1, node + 1, 3 + r, 3 + r, spin);
                 for c in 0..3 {
-                    m.mass.lower[node + 1][3 + r][c] += arm * along[r][c];
-                    m.stiffness.diagonal[node + 1][3 + r][3 + c] += k[r][c];
-                    m.damping.diagonal[node + 1][3 + r][3 + c] += 2.0 * spin / n2 * n[r] * v[c];
+                    m.mass.add(node + 1, node, 3 + r, c, arm * along[r][c]);
+                    m.stiffness.add(node + 1, node + 1, 3 + r, 3 + c, k[r][c]);
+                    m.damping.add(node + 1, node + 1, 3 + r, 3 + c, 2.0 * spin / n2 * n[r] * v[c]);
                 }
             }
         }

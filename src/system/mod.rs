@@ -18,7 +18,7 @@ mod wetting;
 use contact::Near;
 pub use contact::SurfaceLoad;
 use elements::{Axial, Axially};
-pub use elements::{Chain, Tally, Wetness, gather};
+pub use elements::{Chain, Each, ElementTangents, Tally, Wetness, gather};
 pub use environment::Environment;
 pub use far_end::FarEnd;
 pub use load::RigidLoad;
@@ -354,7 +354,7 @@ impl System {
                 add_outer(&mut k, -clamp, &t, &t);
                 for r in 0..3 {
                     for c in 0..3 {
-                        m.stiffness.diagonal[0][3 + r][3 + c] += k[r][c];
+                        m.stiffness.add(0, 0, 3 + r, 3 + c, k[r][c]);
                     }
                 }
             }
@@ -376,7 +376,7 @@ impl System {
         self.tally.kinetic += 0.5 * self.lump.mass * dot(&wn, &wn);
         if TANGENT {
             for c in 0..3 {
-                m.mass.diagonal[n][c][c] += self.lump.mass;
+                m.mass.add(n, n, c, c, self.lump.mass);
             }
         }
         if let (Some(lump), Some(line)) = (&self.lump.water, &self.chain.water) {
@@ -395,10 +395,10 @@ impl System {
             }
             if TANGENT {
                 for r in 0..3 {
-                    m.mass.diagonal[n][r][r] += load.mass;
-                    m.stiffness.diagonal[n][r][2] -= load.dz[r];
+                    m.mass.add(n, n, r, r, load.mass);
+                    m.stiffness.add(n, n, r, 2, -load.dz[r]);
                     for c in 0..3 {
-                        m.damping.diagonal[n][r][c] -= load.dv[r][c];
+                        m.damping.add(n, n, r, c, -load.dv[r][c]);
                     }
                 }
             }
@@ -407,24 +407,6 @@ impl System {
             f[at + c] += force[c];
         }
         self.lump_force = force;
-    }
-
-    /// Prescribed rows (positions of the first node and of a fixed far end) of the matrices.
-    fn pin(&self, m: &mut Matrices) {
-        let far = self.far_end.map(|_| self.arc.len() - 1);
-        for node in [Some(0), far].into_iter().flatten() {
-            for r in 0..3 {
-                for b in [&mut m.mass, &mut m.damping, &mut m.stiffness] {
-                    b.lower[node][r] = [0.0; 6];
-                    b.diagonal[node][r] = [0.0; 6];
-                    b.upper[node][r] = [0.0; 6];
-                }
-                m.mass.diagonal[node][r][r] = 1.0;
-            }
-            for c in &mut m.couplings {
-                c.damping_column[6 * node..6 * node + 3].fill(0.0);
-            }
-        }
     }
 
     /// A step begins; its tries start from the axial forces as they are.
@@ -470,9 +452,13 @@ impl System {
         let varies = self.mass_varies();
         self.evaluate::<true>(&env, u, w, varies.then_some(a), if self.keeps_axial { Axially::Begin } else { Axially::Law }, f, m);
         if varies {
-            m.mass.multiply_add(1.0, a, f);
+            m.multiply_add([Some((1.0, a)), None, None], f);
         }
-        self.pin(m);
+        // Positions of the first node and of a fixed far end.
+        m.pin(0);
+        if self.far_end.is_some() {
+            m.pin(self.arc.len() - 1);
+        }
         f[..3].fill(0.0);
         self.drive_far_end(&env, None, f);
     }

@@ -77,7 +77,7 @@ impl System {
             let inertia = self.turning.get(at - first).map_or(1.0, |s| s.inertia);
             f[at] -= a.map_or(0.0, |a| inertia * a[at]);
             if TANGENT {
-                m.mass.diagonal[at / 6][at % 6][at % 6] += inertia;
+                m.mass.add(at / 6, at / 6, at % 6, at % 6, inertia);
             }
         }
         if self.frozen {
@@ -90,7 +90,7 @@ impl System {
             f[s.at] += moment - self.surface_loads[s.surface].moment[0] - s.inertia * turning_of_ship(&env.frame, &surface.basis[0]);
             self.tally.kinetic += 0.5 * s.inertia * spin * spin;
             if TANGENT {
-                m.damping.diagonal[s.at / 6][s.at % 6][s.at % 6] -= slope;
+                m.damping.add(s.at / 6, s.at / 6, s.at % 6, s.at % 6, -slope);
             }
         }
     }

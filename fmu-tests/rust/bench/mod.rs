@@ -143,12 +143,12 @@ pub fn frequencies(system: &mut System, u: &[f64], axis: usize, held_end: bool) 
     let zero = vec![0.0; n];
     let (mut m, mut f) = (Matrices::zeros(n / 6), zero.clone());
     system.linearize(0.0, u, &zero, &zero, &mut m, &mut f);
-    let stiffness = dense(&m.stiffness);
+    let [mass, _, stiffness] = m.whole().map(|m| dense(&m));
     // Prescribed rows, and the slots of a load without use, have no stiffness.
     let held = |i: usize| held_end && i == n - 6 + axis;
     let rows: Vec<usize> = (0..n).filter(|i| i % 3 == axis && stiffness[(*i, *i)] != 0.0 && !held(*i)).collect();
     let pick = |m: &DMatrix<f64>| DMatrix::from_fn(rows.len(), rows.len(), |i, j| m[(rows[i], rows[j])]);
-    let (k, m) = (pick(&stiffness), pick(&dense(&m.mass)));
+    let (k, m) = (pick(&stiffness), pick(&mass));
     let l = k.cholesky().expect("a stable shape").l();
     let half = l.solve_lower_triangular(&m).expect("regular");
     let whole = l.solve_lower_triangular(&half.transpose()).expect("regular");

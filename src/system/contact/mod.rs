@@ -231,7 +231,7 @@ impl SideBySide<'_> {
         let Some(coupling) = self.coupling.map(|k| &mut self.m.couplings[k]) else { return };
         let (block, at) = (coupling.at / 6, coupling.at % 6);
         for (l, &e) in arcs.element[..arcs.count].iter().enumerate() {
-            self.m.damping.diagonal[block][at][at] += twist.spin_corner.0[l];
+            self.m.damping.add(block, block, at, at, twist.spin_corner.0[l]);
             for (to, from) in [
                 (&mut coupling.damping_column, &twist.spin_column),
                 (&mut coupling.damping_row, &twist.damping),

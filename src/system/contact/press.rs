@@ -11,10 +11,9 @@ use super::group::{Cubics, Group, LANES, Row, cubic, set_cubic};
 use crate::cable::shape;
 use crate::contact::arcs::Arc;
 use crate::contact::surface::{Face, Surface};
-use crate::linalg::BlockTridiagonal;
+use crate::linalg::Patches;
 use crate::math::lanes::{Mat3, Vec3, dot, lane, mat_vec, set_lane};
 use crate::math::quadrature::GAUSS5;
-use crate::system::matrices::element_block;
 
 /// Pairs of slots (i, j), i ≤ j, and for each pair its place among them.
 const PAIRS: [(usize, usize); 10] = [(0, 0), (0, 1), (0, 2), (0, 3), (1, 1), (1, 2), (1, 3), (2, 2), (2, 3), (3, 3)];
@@ -76,15 +75,11 @@ impl Arcs {
 impl Arcs {
     /// Adds blocks of the slots to the elements' matrices.
     #[inline(always)]
-    fn scatter(&self, all: &Blocks, to: &mut BlockTridiagonal) {
+    fn scatter(&self, all: &Blocks, to: &mut Patches) {
         for l in 0..self.count {
-            for i in 0..4 {
-                for j in 0..4 {
-                    let block = element_block(to, self.element[l], i, j);
-                    for k in 0..9 {
-                        block[3 * (i % 2) + k / 3][3 * (j % 2) + k % 3] += all[i][j][k].0[l];
-                    }
-                }
+            for c in 0..12 {
+                let column = std::array::from_fn(|r| all[r / 3][c / 3][3 * (r % 3) + c % 3].0[l]);
+                to.add_pair_column(self.element[l], c, 1.0, &column);
             }
         }
     }
@@ -123,7 +118,7 @@ impl Slopes {
 
     /// Adds K of the arcs to a matrix.
     #[inline(always)]
-    pub fn add_stiffness(&self, arcs: &Arcs, to: &mut BlockTridiagonal) {
+    pub fn add_stiffness(&self, arcs: &Arcs, to: &mut Patches) {
         let mut all = spread(&self.stiffness);
         for end in 0..2 {
             let (q, x) = (self.by_end[end], self.end_rate[end]);
@@ -142,7 +137,7 @@ impl Slopes {
 
     /// Adds D of the arcs to a matrix.
     #[inline(always)]
-    pub fn add_damping(&self, arcs: &Arcs, to: &mut BlockTridiagonal) {
+    pub fn add_damping(&self, arcs: &Arcs, to: &mut Patches) {
         arcs.scatter(&spread(&self.damping), to);
     }
 }

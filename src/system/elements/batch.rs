@@ -71,7 +71,7 @@ pub struct Batch {
 }
 
 /// What the tangent needs of a Gauss point, of elements side by side.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slopes {
     /// Weighted derivatives of the resistance by ξ-derivatives.
     pub k_pp: Rows33,
@@ -82,7 +82,8 @@ pub struct Slopes {
     pub c_axial: Row,
     pub g: Rows3,
     pub c_bending: Row,
-    pub e: [Rows3; SPANS],
+    pub e2: Rows3,
+    pub e1: Rows3,
     /// Weighted derivatives of the fluid force.
     pub dz: Rows3,
     pub dv: Rows33,
@@ -99,7 +100,8 @@ pub const STILL: Slopes = Slopes {
     c_axial: Row::ZERO,
     g: [Row::ZERO; 3],
     c_bending: Row::ZERO,
-    e: [[Row::ZERO; 3]; SPANS],
+    e2: [Row::ZERO; 3],
+    e1: [Row::ZERO; 3],
     dz: [Row::ZERO; 3],
     dv: NONE,
     dp: NONE,

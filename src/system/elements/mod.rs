@@ -15,8 +15,8 @@ use crate::hydro::line::LineInWater;
 use crate::integrator::Stage;
 use crate::math::lanes::{Kernel, Vec3, axpy, lane, scale, set_lane, widest};
 use crate::math::quadrature::GAUSS3;
-use batch::{Batch, LANES, Row, Rows3, SPANS, STILL, Slopes, Station, along, gather_lane, spans};
-use tangent::{Place, stiffness};
+use batch::{Batch, LANES, Row, Rows3, STILL, Slopes, Station, along, gather_lane, spans};
+pub use tangent::{Each, ElementTangents};
 use water::immerse;
 
 /// Sums over the cable that the energy ledger and the integrator want.
@@ -161,8 +161,8 @@ impl Chain {
         }
     }
 
-    /// Overwrites `forces` (12 per element: all that acts on the element's own slots, inertia included) and, with `TANGENT`, adds M, D and K of
-    /// F − M(u) a to `matrices`. `a`: acceleration relative to the first node; without it no inertia relative to the first node. `axially`:
+    /// Overwrites `forces` (12 per element: all that acts on the element's own slots, inertia included) and, with `TANGENT`, the elements' share of
+    /// M, D and K of F − M(u) a. `a`: acceleration relative to the first node; without it no inertia relative to the first node. `axially`:
     /// see there.
     pub fn pass<const TANGENT: bool>(
         &self,
@@ -192,19 +192,23 @@ impl Chain {
     ) -> Tally {
         let mut tally = Tally::default();
         let stations = GAUSS3.map(Station::new);
-        let mut slopes = [STILL; 3];
+        let mut none = [STILL; 3];
         let mut batch = Batch::default();
+        if TANGENT {
+            matrices.elements.begin(self);
+        }
         for first in (0..self.lengths.len()).step_by(LANES) {
             let lanes = LANES.min(self.lengths.len() - first);
             self.gather_batch(env, first, u, w, a, &mut batch);
-            for ((station, slopes), axial) in stations.iter().zip(&mut slopes).zip(&mut axial[first / LANES]) {
+            let slopes = if TANGENT { matrices.elements.group(first / LANES, &batch) } else { &mut none };
+            for ((station, slopes), axial) in stations.iter().zip(&mut *slopes).zip(&mut axial[first / LANES]) {
                 self.resist::<TANGENT, OF>(&mut batch, station, slopes, axially, axial);
             }
             let wet = batch.wet.0.iter().any(|x| *x > 0.0);
             if let Some(water) = &self.water
                 && wet
             {
-                for (station, slopes) in stations.iter().zip(&mut slopes) {
+                for (station, slopes) in stations.iter().zip(slopes) {
                     if water.cross_flow {
                         immerse::<TANGENT, true>(water, env, &mut batch, station, slopes);
                     } else {
@@ -222,12 +226,6 @@ impl Chain {
                 for i in 0..4 {
                     out[3 * i..3 * i + 3].copy_from_slice(&lane(&batch.f[i], l));
                 }
-            }
-            if TANGENT {
-                let to = Place { first, lanes, length: &batch.length };
-                stiffness(&stations, &slopes, wet, &to, &mut matrices.stiffness);
-                self.damping(&stations, &slopes, wet, &batch.inverse, &to, &mut matrices.damping);
-                self.inertia(&stations, &slopes, wet, &to, &mut matrices.mass);
             }
         }
         tally
@@ -348,11 +346,8 @@ impl Chain {
                 slopes.c_axial.0[l] = x * r.c_axial;
                 set_lane(&mut slopes.g, l, r.g);
                 slopes.c_bending.0[l] = x * r.c_bending;
-                for k in 0..SPANS {
-                    for c in 0..3 {
-                        slopes.e[k][c].0[l] = b[k] * r.e2[c] + d[k] * i * r.e1[c];
-                    }
-                }
+                set_lane(&mut slopes.e2, l, r.e2);
+                set_lane(&mut slopes.e1, l, scale(i, &r.e1));
             }
         }
         if TANGENT {

@@ -1,7 +1,7 @@
 //! Fluid forces on elements that are all under water.
 
 use super::super::environment::Environment;
-use super::batch::{Batch, LANES, Row, Rows3, Slopes, Station, along, spans, value};
+use super::batch::{Batch, LANES, NONE, Row, Rows3, Slopes, Station, along, spans, value};
 use crate::hydro::line::{LineInWater, LinePoint, Stream};
 use crate::math::lanes::{dot, lane, scale, set_lane};
 
@@ -53,6 +53,8 @@ pub fn immerse<const TANGENT: bool, const CROSS_FLOW: bool>(
     for l in 0..LANES {
         set_lane(&mut cd, l, water.coefficient(re.0[l]).into());
     }
+    // Rows of the loop's own, since only of these does the compiler know that nothing else changes them.
+    let (mut dz, mut dv, mut dp, mut mass) = ([Row::ZERO; 3], NONE, NONE, NONE);
     for l in 0..LANES {
         let x = fluid_point(env, batch, station, l);
         let load = water.load_in::<TANGENT, CROSS_FLOW>(&x, &stream_lane(&stream, l), lane(&cd, l).into(), &env.flow);
@@ -68,10 +70,13 @@ pub fn immerse<const TANGENT: bool, const CROSS_FLOW: bool>(
         }
         if TANGENT {
             let flat = |s: f64, m: &[[f64; 3]; 3]| -> [f64; 9] { std::array::from_fn(|k| s * m[k / 3][k % 3]) };
-            set_lane(&mut slopes.dz, l, scale(wl, &load.dz));
-            set_lane(&mut slopes.dv, l, flat(wl, &load.dv));
-            set_lane(&mut slopes.dp, l, flat(wl * batch.inverse.0[l], &load.dp));
-            set_lane(&mut slopes.mass, l, flat(wl, &load.mass));
+            set_lane(&mut dz, l, scale(wl, &load.dz));
+            set_lane(&mut dv, l, flat(wl, &load.dv));
+            set_lane(&mut dp, l, flat(wl * batch.inverse.0[l], &load.dp));
+            set_lane(&mut mass, l, flat(wl, &load.mass));
         }
+    }
+    if TANGENT {
+        (slopes.dz, slopes.dv, slopes.dp, slopes.mass) = (dz, dv, dp, mass);
     }
 }

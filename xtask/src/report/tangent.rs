@@ -66,6 +66,7 @@ fn worst(scene: &Scene) -> Result<(f64, usize)> {
     free.contact_forces.fill([0.0; 12]);
     free.linearize(0.0, &u, &w, &still, &mut without, &mut f);
 
+    let ([_, with_d, with_k], [_, without_d, without_k]) = (with.whole(), without.whole());
     let (mut worst, mut columns) = (0.0f64, 0);
     for k in touched.iter().flat_map(|e| (6 * e).max(3)..6 * e + 12) {
         // Of positions (penetrations are 1e-5 m and more), slopes (over elements of 1e-2 m), velocities.
@@ -84,7 +85,7 @@ fn worst(scene: &Scene) -> Result<(f64, usize)> {
             let (up, down) = (shifted(h), shifted(-h));
             let (mut unit, mut exact) = (vec![0.0; n], vec![0.0; n]);
             unit[k] = 1.0;
-            let (a, b) = [(&with.stiffness, &without.stiffness), (&with.damping, &without.damping)][which];
+            let (a, b) = [(&with_k, &without_k), (&with_d, &without_d)][which];
             a.multiply_add(-1.0, &unit, &mut exact);
             b.multiply_add(1.0, &unit, &mut exact);
             // The pinned node has no rows.
