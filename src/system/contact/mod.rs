@@ -14,7 +14,7 @@ use crate::contact::arcs::{Arc, Cubic, MOST_ARCS, Samples, Touch};
 use crate::contact::surface::{Face, Surface};
 use crate::math::lanes::{Kernel, Mat3, Vec3, axpy, dot, mat_vec, widest};
 use group::{Group, LANES, Search};
-use press::{Arcs, Pressed, Sums, Twist, flat, press};
+use press::{Arcs, Pressed, Twist, flat, press};
 
 /// Where the search begins in the first element. Where its node lies on the surface whatever the shape, ξ = 0 is a root of the gap that says
 /// nothing, of a sign that is rounding.
@@ -179,7 +179,7 @@ impl<const TANGENT: bool, const TURNS: bool> Kernel for Contact<'_, TANGENT, TUR
         let surface = all.on.surface;
         let (faces, count) = surface.faces();
         let moving = surface.is_damped() && !all.frame.frozen;
-        let (mut group, mut arcs, mut sums) = (Group::EMPTY, Arcs::NONE, Sums::ZERO);
+        let (mut group, mut arcs) = (Group::EMPTY, Arcs::NONE);
         for elements in all.near.chunks(LANES) {
             group.fill(surface, all.frame, elements, moving, all.u, all.w, all.lengths);
             for (side, &face) in faces[..count].iter().enumerate() {
@@ -195,7 +195,7 @@ impl<const TANGENT: bool, const TURNS: bool> Kernel for Contact<'_, TANGENT, TUR
                         });
                     }
                     if arcs.count > 0 && (l == elements.len() || arcs.count + n > LANES) {
-                        all.flush::<TANGENT, TURNS>(side, face, &mut arcs, &mut sums);
+                        all.flush::<TANGENT, TURNS>(side, face, &mut arcs);
                     }
                     for arc in &found[..n] {
                         arcs.push(&group, l, elements[l], *arc);
@@ -209,19 +209,19 @@ impl<const TANGENT: bool, const TURNS: bool> Kernel for Contact<'_, TANGENT, TUR
 impl SideBySide<'_> {
     /// Presses the arcs and adds what comes of it to forces and matrices.
     #[inline(always)]
-    fn flush<const TANGENT: bool, const TURNS: bool>(&mut self, side: usize, face: Face, arcs: &mut Arcs, sums: &mut Sums) {
-        press::<TANGENT, TURNS>(&self.on, side, face, arcs, sums, self.total);
+    fn flush<const TANGENT: bool, const TURNS: bool>(&mut self, side: usize, face: Face, arcs: &mut Arcs) {
+        let sums = press::<TANGENT, TURNS>(&self.on, side, face, arcs, self.total);
         for (l, &e) in arcs.element[..arcs.count].iter().enumerate() {
             for (to, f) in self.forces[e].iter_mut().zip(flat(&sums.forces, l)) {
                 *to += f;
             }
         }
-        if TANGENT {
-            sums.slopes.add_stiffness(arcs, &mut self.m.stiffness);
+        if let Some((slopes, twist)) = &sums.slopes {
+            slopes.add_stiffness(arcs, &mut self.m.stiffness);
             if self.on.surface.is_damped() {
-                sums.slopes.add_damping(arcs, &mut self.m.damping);
+                slopes.add_damping(arcs, &mut self.m.damping);
             }
-            self.couple(arcs, &sums.twist);
+            self.couple(arcs, twist);
         }
         arcs.count = 0;
     }

@@ -170,12 +170,8 @@ impl Twist {
 /// What arcs do to their elements.
 pub struct Sums {
     pub forces: Slots,
-    pub slopes: Slopes,
-    pub twist: Twist,
-}
-
-impl Sums {
-    pub const ZERO: Self = Self { forces: NOTHING, slopes: Slopes::ZERO, twist: Twist::ZERO };
+    /// With `TANGENT` only.
+    pub slopes: Option<(Slopes, Twist)>,
 }
 
 /// Row `l` by slot and component.
@@ -243,17 +239,16 @@ fn product(a: &Mat3<f64>, b: &Mat3<f64>) -> Mat3<f64> {
     std::array::from_fn(|r| std::array::from_fn(|c| a[r][0] * b[0][c] + a[r][1] * b[1][c] + a[r][2] * b[2][c]))
 }
 
-/// Overwrites `sums` with those of the arcs against face `side`, and adds what the surface feels to `total`. `TURNS`: the surface's rotation
-/// is an unknown, with derivatives of its own.
+/// What the arcs against face `side` do; what the surface feels is added to `total`. `TURNS`: the surface's rotation is an unknown, with
+/// derivatives of its own.
 #[inline(always)]
 pub fn press<const TANGENT: bool, const TURNS: bool>(
     on: &Pressed,
     side: usize,
     face: Face,
     arcs: &mut Arcs,
-    sums: &mut Sums,
     total: &mut SurfaceLoad,
-) {
+) -> Sums {
     arcs.pad();
     let Pressed { surface, rotation, turn, spin } = *on;
     let moves = surface.is_damped();
@@ -368,9 +363,8 @@ pub fn press<const TANGENT: bool, const TURNS: bool>(
             total.moment[c] += moment[c].0[l];
         }
     }
-    sums.forces = forces;
     if !TANGENT {
-        return;
+        return Sums { forces, slopes: None };
     }
     for (end, x) in [from, to].into_iter().enumerate() {
         let (mut rate, mut shapes, mut normal) = (Row::ZERO, [Row::ZERO; 4], [Row::ZERO; 3]);
@@ -393,8 +387,5 @@ pub fn press<const TANGENT: bool, const TURNS: bool>(
             add_to_slots(&mut twist.stiffness, 1.0, &rate, &shapes, &normal);
         }
     }
-    sums.slopes = slopes;
-    if TURNS {
-        sums.twist = twist;
-    }
+    Sums { forces, slopes: Some((slopes, twist)) }
 }
