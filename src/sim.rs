@@ -1,5 +1,6 @@
 //! The only door to the physics: a scene goes in, committed states come out.
 
+mod compensation;
 mod direction;
 mod drives;
 mod rates;
@@ -10,8 +11,9 @@ use crate::integrator::{Integrator, Method, Problem, Trial};
 use crate::ledger::Ledger;
 use crate::linalg::BlockTridiagonal;
 use crate::outputs::{Outputs, observe};
-use crate::scene::{Initial, Scene};
+use crate::scene::{Initial, Scene, Setpoint};
 use crate::system::{FirstEnd, Matrices, Ramp, System};
+use crate::winch::Compensation;
 use drives::Drives;
 use nalgebra::Vector3;
 use thiserror::Error;
@@ -32,7 +34,7 @@ pub struct Channel {
 pub struct Inputs {
     /// x, y, z, roll, pitch, yaw of the ship's frame.
     pub ship: [Channel; 6],
-    /// Winch set-point (rad, or m with a payout command), with its rate.
+    /// Winch set-point (rad, or m with a payout command), with its rate; of no effect where the scene has a built-in one.
     pub winch: Channel,
     /// Uniform current added to the profile, x and y, m/s.
     pub current: [Channel; 2],
@@ -71,6 +73,8 @@ pub struct Simulation {
     backup: State,
     work: Work,
     outputs: Outputs,
+    /// Where the winch's set-point comes from, if not from outside.
+    compensation: Option<Compensation>,
     /// How the last step began, with `backup`; `None` if the state does not come from a step.
     last: Option<(Drives, Inputs)>,
 }
@@ -120,9 +124,6 @@ impl Simulation {
     /// # Errors
     /// [`SimError::Start`] when the scene asks for something that this version cannot do.
     pub fn new(scene: &Scene) -> Result<Self, SimError> {
-        if scene.winch.as_ref().is_some_and(|w| w.setpoint != crate::scene::Setpoint::External) {
-            return Err(SimError::Start("[winch] setpoint other than \"external\" is not supported by this version".into()));
-        }
         let mut system = System::new(scene);
         let (n, nodes) = (system.size(), system.nodes());
         let zeros = || vec![0.0; n];
@@ -157,6 +158,7 @@ impl Simulation {
                 cable: crate::outputs::CableOutputs { points: vec![Vector3::zeros(); scene.points], ..Default::default() },
                 ..Outputs::default()
             },
+            compensation: scene.winch.as_ref().filter(|w| w.setpoint != Setpoint::External).map(|w| Compensation::new(w.setpoint)),
             last: None,
             system,
         })
@@ -250,6 +252,8 @@ impl Simulation {
         self.system.save_axial(&mut self.state.n);
         self.state.base = self.system.environment(time).base.map(|b| b.0[2]);
         self.observe();
+        self.begin_compensation()?;
+        self.observe_setpoint();
         // Errors are measured by the greater of weight and first tension.
         self.state.tension = weight.max(self.outputs.cable.tension_max);
         self.set_tolerance();
@@ -332,6 +336,7 @@ impl Simulation {
             status.code = 0;
             status.message.clear();
         }
+        self.observe_setpoint();
     }
 
     /// Integrates to `time` (s) exactly, with `inputs` as of the present time.
@@ -610,6 +615,9 @@ impl Simulation {
         }
         if let FirstEnd::Winch { drive, .. } = &mut self.system.first {
             drive.visit(visit);
+        }
+        if let Some(compensation) = &mut self.compensation {
+            compensation.visit(visit);
         }
         self.outputs.visit(visit);
         self.visit_tangent(visit);

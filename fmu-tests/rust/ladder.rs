@@ -4,6 +4,7 @@ mod bench;
 
 use bench::{Wire, dense};
 use fairlead::integrator::Problem;
+use fairlead::math::interpolation::Quintic;
 use fairlead::sim::Channel;
 use fairlead::system::{FirstEnd, Matrices, System};
 use nalgebra::{DMatrix, Rotation3, Vector3};
@@ -289,7 +290,7 @@ fn stir(system: &mut System) {
     if let FirstEnd::Winch { drive, .. } = &mut system.first {
         let angle = drive.state()[0];
         drive.start(0.0, angle);
-        drive.advance(0.0, 0.1, &[angle + 0.5, 1.0, 0.0]);
+        drive.advance(0.0, 0.1, &Quintic::parabola([angle + 0.5, 1.0, 0.0]));
     }
 }
 

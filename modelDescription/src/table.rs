@@ -24,6 +24,10 @@ pub enum Output {
     WinchTorque,
     /// `winch.payout`.
     WinchPayout,
+    /// `winch.target`.
+    WinchTarget,
+    /// `winch.target_rate`.
+    WinchTargetRate,
     /// Force on the drum: component.
     WinchForce(usize),
     /// `anchor.tension`.
@@ -223,6 +227,10 @@ fn derivatives(shape: &Shape, order: usize) -> bool {
     shape.ship_derivatives.is_some_and(|n| n >= order)
 }
 
+fn built_in(shape: &Shape) -> bool {
+    shape.winch && !shape.external_setpoint
+}
+
 /// All inputs and outputs.
 #[rustfmt::skip] // one row a line
 pub static FAMILIES: &[Family] = &[
@@ -248,6 +256,10 @@ pub static FAMILIES: &[Family] = &[
     output(113, "winch.torque", WINCH, Real(&u::MOMENT), |_, _| Output::WinchTorque, "Moment of the cable on the drum about its axis"),
     output(114, "winch.payout", WINCH, Real(&u::PAYOUT), |_, _| Output::WinchPayout, "Cable length paid out since the start"),
     output(115, "winch.force.{x,y,z}", WINCH, Real(&u::FORCE), |_, c| Output::WinchForce(c), "Force of the cable on the drum, ship axes, {}"),
+    output(116, "winch.target", If(|s| built_in(s) && !s.payout_command), Real(&u::ANGLE), |_, _| Output::WinchTarget, "Set-point of the drum angle from the built-in heave compensation"),
+    output(117, "winch.target_rate", If(|s| built_in(s) && !s.payout_command), Real(&u::ANGULAR_VELOCITY), |_, _| Output::WinchTargetRate, "Time derivative of the built-in set-point"),
+    output(118, "winch.target", If(|s| built_in(s) && s.payout_command), Real(&u::PAYOUT), |_, _| Output::WinchTarget, "Set-point of the cable length paid out since the start from the built-in heave compensation"),
+    output(119, "winch.target_rate", If(|s| built_in(s) && s.payout_command), Real(&u::VELOCITY), |_, _| Output::WinchTargetRate, "Time derivative of the built-in set-point"),
     output(120, "anchor.tension", ANCHOR, Real(&u::FORCE), |_, _| Output::AnchorTension, "Axial force of the cable at its anchor"),
     output(121, "anchor.force.{x,y,z}", ANCHOR, Real(&u::FORCE), |_, c| Output::AnchorForce(c), "Force of the cable on the anchor, ship axes, {}"),
     output(130, "sheave[i].force.{x,y,z}", EachSheave, Real(&u::FORCE), Output::SheaveForce, "Force of the cable on the sheave, ship axes, {}"),

@@ -7,6 +7,11 @@ use super::jet::Jet;
 pub struct Quintic(pub [f64; 6]);
 
 impl Quintic {
+    /// Through value, slope and second derivative at τ = 0.
+    pub fn parabola(from: [f64; 3]) -> Self {
+        Self([from[0], from[1], 0.5 * from[2], 0.0, 0.0, 0.0])
+    }
+
     /// Meets value, slope and second derivative `from` at τ = 0 and `to` at τ = `h`.
     pub fn hermite(from: [f64; 3], to: [f64; 3], h: f64) -> Self {
         let [x0, v0, a0] = from;
@@ -33,6 +38,11 @@ impl Quintic {
             2.0 * c[2] + t * (6.0 * c[3] + t * (12.0 * c[4] + t * 20.0 * c[5])),
             6.0 * c[3] + t * (24.0 * c[4] + t * 60.0 * c[5]),
         ])
+    }
+
+    /// The quintic `s` times as high.
+    pub fn times(&self, s: f64) -> Self {
+        Self(self.0.map(|c| s * c))
     }
 
     /// Sum of two quintics in the same variable.

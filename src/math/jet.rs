@@ -24,6 +24,16 @@ impl Jet {
             Self([c, -s * d1, -s * d2 - c * q, -s * d3 - 3.0 * c * d1 * d2 + s * q * d1]),
         )
     }
+
+    /// The square root of a positive number, from s² = x by Leibniz's rule.
+    pub fn sqrt(self) -> Self {
+        let [x, d1, d2, d3] = self.0;
+        let s = x.sqrt();
+        let half = 0.5 / s;
+        let s1 = half * d1;
+        let s2 = half * (d2 - 2.0 * s1 * s1);
+        Self([s, s1, s2, half * (d3 - 6.0 * s1 * s2)])
+    }
 }
 
 impl Add for Jet {
@@ -75,10 +85,10 @@ mod tests {
     }
 
     #[test]
-    fn exact_jets_of_products_and_sines_match_differences() {
+    fn exact_jets_of_products_sines_and_roots_match_differences() {
         let f = |t: f64| {
             let (s, c) = x(t).sin_cos();
-            s * s * c * x(t) + c - s * 2.0
+            s * s * c * x(t) + c - s * 2.0 + (x(t) + Jet::constant(2.0)).sqrt()
         };
         // Central differences of one order give the next: truncation h²/6 f''' ~ 1e-8 with h = 1e-4.
         let h = 1e-4;

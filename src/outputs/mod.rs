@@ -6,7 +6,8 @@ mod observe;
 mod sheave;
 mod slope;
 
-pub use observe::observe;
+pub use observe::{observe, tangent_at};
+pub use sheave::contact_arc;
 pub use slope::Slope;
 
 use nalgebra::Vector3;
@@ -53,6 +54,10 @@ pub struct WinchOutputs {
     pub payout: f64,
     /// Force of the cable on the drum, ship axes, N.
     pub force: Vector3<f64>,
+    /// The built-in set-point: rad, or m of payout where the scene commands that.
+    pub target: f64,
+    /// Its rate.
+    pub target_rate: f64,
 }
 
 /// The anchor.
@@ -198,7 +203,7 @@ impl Outputs {
             *n = (x as u64).min(1 << 53);
         }
         let w = &mut self.winch;
-        for x in [&mut w.tension, &mut w.angle, &mut w.rate, &mut w.torque, &mut w.payout] {
+        for x in [&mut w.tension, &mut w.angle, &mut w.rate, &mut w.torque, &mut w.payout, &mut w.target, &mut w.target_rate] {
             visit(x);
         }
         vector(&mut w.force, visit);

@@ -1,9 +1,10 @@
 //! What is prescribed from outside: laid over a step, kept at its begin, taken back.
 
 use super::{Inputs, Simulation};
+use crate::math::interpolation::Quintic;
 use crate::ship::ShipDrive;
 use crate::system::{FirstEnd, Ramp};
-use crate::winch::Committed;
+use crate::winch::{Committed, Compensation};
 
 /// Everything prescribed, as a step finds it.
 #[derive(Clone, Debug)]
@@ -11,6 +12,7 @@ pub(super) struct Drives {
     begin: f64,
     ship: ShipDrive,
     winch: Option<Committed>,
+    compensation: Option<Compensation>,
     current: [Ramp; 2],
     body_force: [Ramp; 3],
 }
@@ -18,18 +20,23 @@ pub(super) struct Drives {
 impl Simulation {
     /// Lays the paths of everything prescribed over the next `h` seconds.
     pub(super) fn drive(&mut self, t: f64, h: f64, inputs: &Inputs) {
+        self.system.ship.advance(t, h, &inputs.ship);
+        self.compensate(t, h);
         let system = &mut self.system;
         system.begin = t;
-        system.ship.advance(t, h, &inputs.ship);
         system.current = std::array::from_fn(|i| Ramp::from(&inputs.current[i]));
         system.body_force = std::array::from_fn(|i| Ramp::from(&inputs.body_force[i]));
         if let (FirstEnd::Winch { drive, geometry, .. }, Some(winch)) = (&mut system.first, &self.scene.winch) {
             let c = &inputs.winch;
-            let mut path = [c.value, c.first.unwrap_or(0.0), c.second.unwrap_or(0.0)];
-            if winch.payout_command {
-                let k = geometry.sense / geometry.radius;
-                path = [self.state.first_angle + k * path[0], k * path[1], k * path[2]];
-            }
+            let given = Quintic::parabola([c.value, c.first.unwrap_or(0.0), c.second.unwrap_or(0.0)]);
+            let path = match &self.compensation {
+                None if !winch.payout_command => given,
+                built_in => {
+                    let metres = built_in.as_ref().map_or(&given, Compensation::path);
+                    let start = Quintic::parabola([self.state.first_angle, 0.0, 0.0]);
+                    start.plus(&metres.times(geometry.sense / geometry.radius))
+                }
+            };
             drive.advance(t, h, &path);
         }
         // Where the first node's acceleration jumps the cable's does not, so that relative to it the whole cable's does.
@@ -51,6 +58,7 @@ impl Simulation {
                 FirstEnd::Winch { drive, .. } => Some(drive.committed()),
                 FirstEnd::Anchor(_) => None,
             },
+            compensation: self.compensation,
             current: system.current,
             body_force: system.body_force,
         }
@@ -63,6 +71,7 @@ impl Simulation {
         system.restore_axial(&self.state.n);
         system.begin = drives.begin;
         system.ship = drives.ship.clone();
+        self.compensation = drives.compensation;
         (system.current, system.body_force) = (drives.current, drives.body_force);
         if let (FirstEnd::Winch { drive, .. }, Some(winch)) = (&mut system.first, &drives.winch) {
             drive.restore(winch);

@@ -24,6 +24,8 @@ pub(super) fn output(quantity: Output, o: &Outputs, ned: bool) -> Value {
         WinchRate => real(o.winch.rate),
         WinchTorque => real(o.winch.torque),
         WinchPayout => real(o.winch.payout),
+        WinchTarget => real(o.winch.target),
+        WinchTargetRate => real(o.winch.target_rate),
         WinchForce(c) => component(&o.winch.force, c),
         AnchorTension => real(o.anchor.tension),
         AnchorForce(c) => component(&o.anchor.force, c),

@@ -8,6 +8,10 @@
 //! the classical Runge-Kutta method in steps so fine that its error (1e-9 of a set-point change) is far below the cable's, and handed on as
 //! quintic pieces with continuous φ, φ̇, φ̈.
 
+mod compensation;
+
+pub use compensation::{Compensation, Mean};
+
 use crate::math::interpolation::Quintic;
 use crate::math::jet::Jet;
 use crate::math::lanes::Vec3;
@@ -36,8 +40,8 @@ pub struct WinchDrive {
     path: Vec<Quintic>,
 }
 
-/// Set-point over a step as a parabola in the time since its begin: φ_SP, φ̇_SP, φ̈_SP.
-pub type SetpointPath = [f64; 3];
+/// Set-point φ_SP over a step, in the time since its begin.
+pub type SetpointPath = Quintic;
 
 impl WinchDrive {
     /// At rest at the scene's angle.
@@ -74,8 +78,8 @@ impl WinchDrive {
     }
 
     fn acceleration(&self, x: &[f64; 2], sp: &SetpointPath, tau: f64, dt: f64) -> f64 {
-        let target = [sp[0] + tau * (sp[1] + 0.5 * tau * sp[2]), sp[1] + tau * sp[2]];
-        let a = self.gains[0] * (target[0] - x[0]) + self.gains[1] * (target[1] - x[1]);
+        let [angle, rate, ..] = sp.jet(tau).0;
+        let a = self.gains[0] * (angle - x[0]) + self.gains[1] * (rate - x[1]);
         // No faster than reaches the greatest rate within the step.
         let a = a.clamp(-self.limits[1], self.limits[1]);
         // Not `clamp`: where absurd gains have made the rate infinite the bounds are NaN, and the step fails by itself later.
@@ -259,7 +263,7 @@ mod tests {
             w.start(0.0, 0.0);
             for i in 0..(1.0 / h) as usize {
                 let t = i as f64 * h;
-                w.advance(t, h, &[1.0, 0.0, 0.0]);
+                w.advance(t, h, &Quintic::parabola([1.0, 0.0, 0.0]));
                 for k in 0..=4 {
                     let s = t + h * f64::from(k) / 4.0;
                     assert!((w.angle(s).0[0] - response(s)).abs() < 2e-7, "{h}: {} at {s}", w.angle(s).0[0] - response(s)); // FINENESS⁴/120 a second
@@ -274,7 +278,7 @@ mod tests {
         // Thesis 4.3: k1 = 200, k2 = 20 give a 90 % rise time of about 0.2 s.
         let mut w = WinchDrive::new(&winch());
         w.start(0.0, 0.0);
-        w.advance(0.0, 0.5, &[0.5764, 0.0, 0.0]);
+        w.advance(0.0, 0.5, &Quintic::parabola([0.5764, 0.0, 0.0]));
         let rise = (0..500).map(|i| 1e-3 * f64::from(i)).find(|t| w.angle(*t).0[0] > 0.9 * 0.5764).unwrap();
         assert!((rise - 0.2).abs() < 0.02, "{rise}");
     }
@@ -286,7 +290,7 @@ mod tests {
         let (mut rate, mut acceleration) = (0.0f64, 0.0f64);
         for i in 0..200 {
             let t = 0.01 * f64::from(i);
-            w.advance(t, 0.01, &[3.0, 0.0, 0.0]);
+            w.advance(t, 0.01, &Quintic::parabola([3.0, 0.0, 0.0]));
             for k in 0..10 {
                 let j = w.angle(t + 0.001 * f64::from(k)).0;
                 rate = rate.max(j[1].abs());
