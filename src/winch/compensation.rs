@@ -15,8 +15,14 @@
 //! is what these algorithms take for the mean. A ship that sails on takes r_s away from r_s0 for good; let the water flow past instead.
 //!
 //! Over a communication step the set-point is the quintic that meets Δl, Δl̇ and Δl̈ of the ship's own path at both ends: so the controller
-//! gets the rate without lag, and nothing jumps. The cable's present direction is known at the step's begin only, with its rate, and goes on
-//! at that rate. What the next begin finds instead differs by O(h²); that difference dies out over one step, like the ship's (`ship`).
+//! gets the rate without lag, and nothing jumps.
+//!
+//! The present direction is measured at communication points and passes a low-pass filter, critically damped and of second order. Without one
+//! the set-point would answer the cable's own transverse waves, pull at the cable in their time and so feed them: a rope without drag flutters.
+//! The filter's corner lies above the swing of what hangs there ([`Smoothed`]); only the direction passes it, and the ship's motion r_s does
+//! not, so that its lag costs what the direction turns in that time, times Δr_s, and no more. Until the next measurement the direction is
+//! continued as the filter would with the last one held; the small difference that the next one makes dies out over one step, like the ship's
+//! (`ship`).
 
 use crate::math::interpolation::Quintic;
 use crate::math::jet::Jet;
@@ -25,6 +31,9 @@ use crate::scene::Setpoint;
 
 /// A step shorter than this is laid as a piece of one that is as long, s: polynomials over less hold nothing but rounding.
 const SHORTEST: f64 = 1e-3;
+
+/// The filter's corner over the swing's frequency: a heavy body on a light rope swings at 1, a chain alone at 1.2 and then at 2.8.
+const CORNER: f64 = 8.0;
 
 /// What the algorithms remember of the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -37,6 +46,55 @@ pub struct Mean {
     pub down: Vec3<f64>,
     /// Arc length at which the direction was taken, m. A metre of payout later it is taken a metre nearer to the cable's first end.
     pub arc: f64,
+    /// √(g/L) of what hangs from the point by the length L, rad/s: the order of its swing.
+    pub swing: f64,
+}
+
+/// A measured direction behind its filter, x'' = ω² (u − x) − 2 ω x'.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Smoothed {
+    /// ω, rad/s.
+    corner: f64,
+    /// x and x'.
+    value: Vec3<f64>,
+    rate: Vec3<f64>,
+    /// The last measurement.
+    measured: Vec3<f64>,
+}
+
+impl Smoothed {
+    /// x with its derivatives after `tau` seconds of a measurement that changes by `change` in every second.
+    fn after(&self, tau: f64, change: &Vec3<f64>) -> [Jet; 3] {
+        let w = self.corner;
+        let decay = (-w * tau).exp();
+        std::array::from_fn(|i| {
+            // x follows u + b τ − 2 b/ω, where b is the change; what it is off from there dies out as (A + B τ) e^{−ωτ}.
+            let b = change[i];
+            let behind = if w > 0.0 { 2.0 * b / w } else { 0.0 };
+            let off = self.value[i] - (self.measured[i] - behind);
+            let slope = self.rate[i] - b + w * off;
+            let now = off + slope * tau;
+            if w == 0.0 {
+                return Jet::constant(self.value[i]);
+            }
+            Jet([
+                self.measured[i] + b * tau - behind + now * decay,
+                b + (slope - w * now) * decay,
+                w * (w * now - 2.0 * slope) * decay,
+                w * w * (3.0 * slope - w * now) * decay,
+            ])
+        })
+    }
+
+    /// Takes the next measurement, `h` seconds after the last.
+    fn take(&mut self, h: f64, measured: &Vec3<f64>) {
+        if h > 0.0 {
+            let change = std::array::from_fn(|i| (measured[i] - self.measured[i]) / h);
+            let after = self.after(h, &change);
+            (self.value, self.rate) = (after.map(|j| j.0[0]), after.map(|j| j.0[1]));
+        }
+        self.measured = *measured;
+    }
 }
 
 /// One of the algorithms, with its path over the present step.
@@ -47,6 +105,7 @@ pub struct Compensation {
     /// r_w, world, and its distance from r_s0, m; of `waterline` only.
     water: Vec3<f64>,
     length: f64,
+    down: Smoothed,
     /// When the present step began, s, and Δl over it, m.
     begin: f64,
     path: Quintic,
@@ -55,7 +114,15 @@ pub struct Compensation {
 impl Compensation {
     /// Before the start.
     pub fn new(source: Setpoint) -> Self {
-        Self { source, mean: Mean::default(), water: [0.0; 3], length: 0.0, begin: 0.0, path: Quintic::default() }
+        Self {
+            source,
+            mean: Mean::default(),
+            water: [0.0; 3],
+            length: 0.0,
+            down: Smoothed::default(),
+            begin: 0.0,
+            path: Quintic::default(),
+        }
     }
 
     /// Begins at time `t` (s) with the point `mean.point` moving like `point`. `waterline` is the still water's z, m.
@@ -63,7 +130,8 @@ impl Compensation {
     /// # Errors
     /// When the algorithm needs the water and the cable's mean line does not meet it from above.
     pub fn start(&mut self, t: f64, mean: Mean, point: &[Jet; 3], waterline: Option<f64>) -> Result<(), String> {
-        *self = Self { mean, begin: t, ..Self::new(self.source) };
+        let down = Smoothed { corner: CORNER * mean.swing, value: mean.down, rate: [0.0; 3], measured: mean.down };
+        *self = Self { mean, down, begin: t, ..Self::new(self.source) };
         if self.source == Setpoint::Waterline {
             let waterline = waterline.ok_or("winch.setpoint = \"waterline\" needs a table [fluid]")?;
             let height = mean.place[2] - waterline;
@@ -97,12 +165,11 @@ impl Compensation {
     }
 
     /// Lays the path from `t` over the next `h` seconds. `point` gives the motion of [`Self::point`] a time later, `down` the cable's present
-    /// direction with its rate, where [`Self::looks_at`] asks for it.
-    pub fn advance(&mut self, t: f64, h: f64, point: impl Fn(f64) -> [Jet; 3], down: Option<[Vec3<f64>; 2]>) {
-        let [u, rate] = down.unwrap_or([self.mean.down, [0.0; 3]]);
+    /// direction, where [`Self::looks_at`] asks for it.
+    pub fn advance(&mut self, t: f64, h: f64, point: impl Fn(f64) -> [Jet; 3], down: Option<Vec3<f64>>) {
+        self.down.take(t - self.begin, &down.unwrap_or(self.mean.down));
         let at = |tau: f64| {
-            let ahead: [Jet; 3] = std::array::from_fn(|i| Jet([u[i] + tau * rate[i], rate[i], 0.0, 0.0]));
-            let [x, v, a, _] = self.payout(&point(tau), &ahead).0;
+            let [x, v, a, _] = self.payout(&point(tau), &self.down.after(tau, &[0.0; 3])).0;
             [x, v, a]
         };
         let span = h.max(SHORTEST);
@@ -137,8 +204,9 @@ impl Compensation {
 
     /// Numbers of what the next step begins with, for snapshots.
     pub fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        let Self { mean, water, length, begin, path, .. } = self;
-        let vectors = [&mut mean.point, &mut mean.place, &mut mean.down, water];
-        vectors.into_iter().flatten().chain([&mut mean.arc, length, begin]).chain(&mut path.0).for_each(visit);
+        let Self { source: _, mean, water, length, down, begin, path } = self;
+        let measured = [&mut down.value, &mut down.rate, &mut down.measured];
+        let vectors = [&mut mean.point, &mut mean.place, &mut mean.down, water].into_iter().chain(measured);
+        vectors.flatten().chain([&mut mean.arc, &mut mean.swing, &mut down.corner, length, begin]).chain(&mut path.0).for_each(visit);
     }
 }
