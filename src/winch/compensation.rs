@@ -210,3 +210,119 @@ impl Compensation {
         vectors.flatten().chain([&mut mean.arc, &mut mean.swing, &mut down.corner, length, begin]).chain(&mut path.0).for_each(visit);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Some motion of the point, with its derivatives.
+    fn point(t: f64) -> [Jet; 3] {
+        [(0.4, 1.1), (0.3, 0.7), (0.5, 1.3)].map(|(a, w)| {
+            let (s, c) = (w * t).sin_cos();
+            Jet([a * s, a * w * c, -a * w * w * s, -a * w * w * w * c])
+        })
+    }
+
+    fn begun(source: Setpoint) -> Compensation {
+        let mean = Mean { point: [0.0; 3], place: [0.0; 3], down: [0.6, 0.0, -0.8], arc: 3.0, swing: 0.5 };
+        let mut c = Compensation::new(source);
+        c.start(0.0, mean, &point(0.0), Some(-4.0)).expect("a line down to the water");
+        c
+    }
+
+    #[test]
+    fn exact_the_filter_solves_its_equation_and_goes_on_from_step_to_step() {
+        let begin = Smoothed { corner: 3.0, value: [0.1, 0.2, -0.9], rate: [0.3, -0.1, 0.2], measured: [0.15, 0.1, -0.95] };
+        let change = [0.4, -0.3, 0.1];
+        for k in 0..20 {
+            let tau = 0.1 * f64::from(k);
+            for (i, x) in begin.after(tau, &change).iter().enumerate() {
+                let u = begin.measured[i] + tau * change[i];
+                assert!((x.0[2] - (9.0 * (u - x.0[0]) - 6.0 * x.0[1])).abs() < 1e-14);
+                assert!((x.0[3] - (9.0 * (change[i] - x.0[1]) - 6.0 * x.0[2])).abs() < 1e-13);
+            }
+        }
+        let start = begin.after(0.0, &change);
+        assert!((0..3).all(|i| (start[i].0[0] - begin.value[i]).abs() < 1e-15 && (start[i].0[1] - begin.rate[i]).abs() < 1e-15));
+        let at = |tau: f64| std::array::from_fn(|i| begin.measured[i] + tau * change[i]);
+        let [mut once, mut often] = [begin; 2];
+        once.take(0.7, &at(0.7));
+        [0.1, 0.15, 0.4, 0.7].into_iter().fold(0.0, |from, to| {
+            often.take(to - from, &at(to));
+            to
+        });
+        assert!((0..3).all(|i| (once.value[i] - often.value[i]).abs() < 1e-15 && (once.rate[i] - often.rate[i]).abs() < 1e-14));
+        // Without gravity nothing swings: the direction stays what it was.
+        let mut still = Smoothed { corner: 0.0, value: [0.0, 0.0, -1.0], rate: [0.0; 3], measured: [0.0, 0.0, -1.0] };
+        still.take(0.1, &[0.1, 0.0, -0.9]);
+        assert_eq!(still.value, [0.0, 0.0, -1.0]);
+    }
+
+    #[test]
+    fn exact_the_path_meets_its_definition_at_both_ends() {
+        for source in [Setpoint::SimplifiedSheave, Setpoint::Waterline] {
+            let mut c = begun(source);
+            let mut t = 0.0;
+            for h in [0.1, 0.02, 1e-9, 0.25, 0.1] {
+                c.advance(t, h, |tau| point(t + tau), None);
+                for end in [t, t + h] {
+                    let r = point(end).map(|j| j.0);
+                    let expected = match source {
+                        // Down to the water 4 m below: 5 m along (0.6, 0, −0.8).
+                        Setpoint::Waterline => (r[0][0] - 3.0).hypot(r[1][0]).hypot(r[2][0] + 4.0) - 5.0,
+                        _ => -0.6 * r[0][0] + 0.8 * r[2][0],
+                    };
+                    assert!((c.at(end).0[0] - expected).abs() < 1e-12, "{source:?} at {end}");
+                    let rate = match source {
+                        Setpoint::Waterline => {
+                            ((r[0][0] - 3.0) * r[0][1] + r[1][0] * r[1][1] + (r[2][0] + 4.0) * r[2][1]) / (expected + 5.0)
+                        }
+                        _ => -0.6 * r[0][1] + 0.8 * r[2][1],
+                    };
+                    assert!((c.at(end).0[1] - rate).abs() < 1e-9, "{source:?} at {end}");
+                }
+                t += h;
+            }
+        }
+    }
+
+    #[test]
+    fn exact_nothing_jumps_when_the_direction_does() {
+        let mut c = begun(Setpoint::Sheave);
+        let mut t = 0.0;
+        let steps = [0.05, 0.05, 1e-9, 0.05, 0.001, 0.1, 0.1, 0.1];
+        for (i, h) in steps.into_iter().enumerate() {
+            let before = c.at(t).0;
+            let u = if i < 2 { [0.6, 0.0, -0.8] } else { [0.5, 0.2, -0.84] };
+            c.advance(t, h, |tau| point(t + tau), Some(u));
+            let after = c.at(t).0;
+            // Rounding of coefficients over the shortest span, 1e-16/h².
+            for k in 0..3 {
+                assert!((before[k] - after[k]).abs() < 1e-9, "derivative {k} at {t}: {} {}", before[k], after[k]);
+            }
+            assert!(after[2].abs() < 5.0, "{}", after[2]);
+            t += h;
+        }
+        // The filter lets it pass within seconds: corner 4/s.
+        for _ in 0..60 {
+            c.advance(t, 0.1, |tau| point(t + tau), Some([0.5, 0.2, -0.84]));
+            t += 0.1;
+        }
+        let r = point(t).map(|j| j.0[0]);
+        let expected = -(0.5 * r[0] + 0.2 * r[1] - 0.84 * r[2]);
+        assert!((c.at(t).0[0] - expected).abs() < 1e-6, "{} {expected}", c.at(t).0[0]);
+    }
+
+    #[test]
+    fn exact_a_line_that_rises_or_begins_under_water_is_refused() {
+        for (down, waterline, part) in [
+            ([0.6, 0.0, 0.8], -4.0, "begins 4.0000 m above it and goes up by 0.8000 m"),
+            ([0.6, 0.0, -0.8], 1.0, "begins 1.0000 m below it and goes down by 0.8000 m"),
+        ] {
+            let mean = Mean { down, ..Mean::default() };
+            let error = Compensation::new(Setpoint::Waterline).start(0.0, mean, &point(0.0), Some(waterline)).unwrap_err();
+            assert!(error.contains(part), "{error}");
+            assert!(Compensation::new(Setpoint::Sheave).start(0.0, mean, &point(0.0), None).is_ok());
+        }
+    }
+}
