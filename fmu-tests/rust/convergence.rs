@@ -7,7 +7,7 @@ mod bench;
 use bench::{HEAVY_WIRE, NYLON, Wire, channel, heaving, relative_rms, run, started};
 use fairlead::cable::shape;
 use fairlead::outputs::Outputs;
-use fairlead::scene::{Method, Scene};
+use fairlead::scene::{Method, Scene, Setpoint};
 use fairlead::sim::{Inputs, Simulation};
 use nalgebra::{Rotation3, Vector3};
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -176,14 +176,20 @@ fn exact_ten_short_communication_steps_do_what_a_long_one_does() {
     }
 }
 
-/// Every method with a scene in air, one in water, and one with a turning sheave and turbulence.
+/// Every method with a scene in air, one in water, and one with a turning sheave and turbulence; every built-in set-point.
 fn of_all_kinds() -> impl Iterator<Item = Scene> {
-    [Method::Rodas4, Method::TrBdf2, Method::Esdirk3, Method::Esdirk4].into_iter().flat_map(|method| {
+    let built_in = [Setpoint::SimplifiedSheave, Setpoint::Sheave, Setpoint::Waterline].map(|setpoint| {
+        let mut scene = reeled("tangent", 1e-3, true);
+        scene.winch.iter_mut().for_each(|w| w.setpoint = setpoint);
+        scene
+    });
+    let methods = [Method::Rodas4, Method::TrBdf2, Method::Esdirk3, Method::Esdirk4].into_iter().flat_map(|method| {
         [reeled("tangent", 1e-3, false), reeled("pinned", 1e-3, true), turning()].map(|mut scene| {
             scene.solver.method = method;
             scene
         })
-    })
+    });
+    methods.chain(built_in)
 }
 
 /// A cord over a sheave that turns, in a turbulent current.

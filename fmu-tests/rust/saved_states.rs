@@ -30,6 +30,41 @@ fn replay_is_bit_identical() {
     fmu.free(point);
 }
 
+/// The set-point's memory (its path, the mean, the measured direction) is in the state, and a reset forgets it.
+#[test]
+fn built_in_set_points_replay_to_the_bit() {
+    let text = include_str!("../../modelDescription/scenes/flume.toml");
+    for setpoint in ["simplified_sheave", "sheave", "waterline"] {
+        let folder = std::env::temp_dir().join(format!("fairlead-{setpoint}-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        std::fs::write(folder.join("scene.toml"), text.replace("setpoint = \"external\"", &format!("setpoint = \"{setpoint}\""))).unwrap();
+        let fmu = Fmu::in_folder(&folder, &Request::good());
+        assert!(fmu.model.variables.iter().all(|v| !v.name.starts_with("winch.setpoint")));
+        fmu.start(0.0);
+        let straight = fmu.sail(0, 12, 0.01);
+        let told = fmu.get("winch.target");
+        assert!((told - std::f64::consts::FRAC_PI_2).abs() > 1e-3 && fmu.get("winch.target_rate") != 0.0, "{told}");
+        assert_eq!(fmu.reset(), Status::Ok);
+        // The inputs too: `sail` sets some of them only.
+        fmu.start(0.0);
+        fmu.sail(0, 5, 0.01);
+        let point = fmu.save();
+        let bytes = fmu.serialize(point);
+        fmu.sail(5, 9, 0.01);
+        assert_eq!(fmu.restore(point), Status::Ok);
+        assert_eq!(fmu.sail(5, 12, 0.01), straight[5..], "{setpoint}");
+        let other = Fmu::in_folder(&folder, &Request::good());
+        other.start(0.0);
+        other.sail(0, 2, 0.02);
+        let read = other.deserialize(&bytes).unwrap();
+        assert_eq!(other.restore(read), Status::Ok);
+        assert_eq!(other.sail(5, 12, 0.01), straight[5..], "{setpoint}, from bytes");
+        fmu.free(point);
+        other.free(read);
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+}
+
 #[test]
 fn a_state_carries_its_parameters_to_other_instances() {
     let a = Fmu::new();

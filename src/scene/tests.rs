@@ -316,10 +316,14 @@ fn exact_problems_name_key_value_and_expectation() {
 }
 
 #[test]
-fn exact_only_external_set_points_go_without_a_ship() {
+fn exact_built_in_set_points_need_a_ship_and_the_waterline_water() {
     let winch = "[winch]\nposition = [0, 0, 0]\naxis = [0, 1, 0]\nradius = 1\ngain_position = 1\ngain_rate = 1\nsetpoint = \"sheave\"\n";
-    let found = problems(&ANCHORED.replace("[anchor]\nposition = [0, 0, 0]\n", winch));
-    assert_eq!(found, ["s.toml: winch.setpoint: found \"sheave\", which needs a table [ship]; expected one, or \"external\""]);
+    let scene = ANCHORED.replace("[anchor]\nposition = [0, 0, 0]\n", winch);
+    assert_eq!(problems(&scene), ["s.toml: winch.setpoint: found \"sheave\", which needs a table [ship]; expected one, or \"external\""]);
+    let sailing = scene.replace("[mesh]", "[ship]\ninput = \"pose\"\n[mesh]");
+    assert_eq!(problems(&sailing), Vec::<String>::new());
+    let dry = problems(&sailing.replace("\"sheave\"", "\"waterline\""));
+    assert_eq!(dry, ["s.toml: winch.setpoint: found \"waterline\", which needs a table [fluid]; expected one, or \"external\""]);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::{SimError, Simulation};
 use crate::cable::shape;
 use crate::contact::surface::Surface;
 use crate::math::jet::Jet;
-use crate::math::lanes::{Vec3, axpy, dot, scale};
+use crate::math::lanes::{Vec3, axpy, dot};
 use crate::outputs::{contact_arc, tangent_at};
 use crate::system::{Environment, FirstEnd, System, gather};
 use crate::winch::{DrumGeometry, Mean};
@@ -33,11 +33,9 @@ impl Simulation {
     /// Lays the set-point's path over a step of `h` seconds from `t` on, over which the ship's is known.
     pub(super) fn compensate(&mut self, t: f64, h: f64) {
         let (Some(compensation), FirstEnd::Winch { geometry, drive, .. }) = (&mut self.compensation, &self.system.first) else { return };
-        let [angle, rate] = drive.state();
+        let angle = drive.state()[0];
         let metres = geometry.sense * geometry.radius;
-        let down = compensation
-            .looks_at(metres * (angle - self.state.first_angle))
-            .map(|s| swinging(&self.system, &self.state.u, &self.state.w, s, -metres * rate));
+        let down = compensation.looks_at(metres * (angle - self.state.first_angle)).map(|s| tangent_at(&self.system, &self.state.u, s));
         let point = compensation.point().map(Jet::constant);
         let ship = &self.system.ship;
         compensation.advance(t, h, |tau| ship.frame(t + tau).point(&point), down);
@@ -75,11 +73,12 @@ fn mean(system: &System, env: &Environment, u: &[f64], drum: &DrumGeometry, tens
     let end = system.arc[system.arc.len() - 1];
     let arc = leaves + (STRAIGHT * bend + WANDERS * radius).max(element).min(0.5 * (end - leaves));
     let down = tangent_at(system, u, arc);
+    let swing = (dot(&env.gravity, &env.gravity).sqrt() / (end - arc)).sqrt();
     let point = match sheave {
         Some(sheave) => leaving(sheave, &env.frame.to_ship(&down), &axpy(&place(system, env, u, leaves), -1.0, &centre)),
         None => axpy(&drum.centre, drum.radius, &drum.up),
     };
-    Mean { point, place: env.frame.point(&point.map(Jet::constant)).map(|j| j.0[0]), down, arc }
+    Mean { point, place: env.frame.point(&point.map(Jet::constant)).map(|j| j.0[0]), down, arc, swing }
 }
 
 /// Position at arc length `s`, ship axes.
@@ -116,17 +115,4 @@ fn leaving(sheave: &Surface, down: &Vec3<f64>, arm: &Vec3<f64>) -> Vec3<f64> {
     let radius = (dot(arm, arm) - axial * axial).max(0.0).sqrt();
     let side = if dot(&outwards, arm) < 0.0 { -radius } else { radius };
     axpy(&axpy(&sheave.centre, axial, axis), side / size, &outwards)
-}
-
-/// The cable's unit direction at arc length `s`, which moves at `speed` (m/s) through the cable, and its rate; world.
-fn swinging(system: &System, u: &[f64], w: &[f64], s: f64, speed: f64) -> [Vec3<f64>; 2] {
-    let (e, x) = system.element_at(s);
-    let scale_of = 1.0 / system.chain.lengths[e];
-    let (slope, second) = (shape::slope(x, scale_of), shape::second(x, scale_of));
-    let q = gather(u, e);
-    let p = shape::interpolate(&slope, &q);
-    let turning = axpy(&shape::interpolate(&slope, &gather(w, e)), speed, &shape::interpolate(&second, &q));
-    let size = dot(&p, &p).sqrt();
-    let down = scale(1.0 / size, &p);
-    [down, scale(1.0 / size, &axpy(&turning, -dot(&turning, &down), &down))]
 }

@@ -92,6 +92,30 @@ fn exact_set_point_starts_where_the_drum_is() {
 }
 
 #[test]
+fn exact_a_built_in_set_point_is_an_output_and_no_input() {
+    let of = |text: &str| {
+        let model = model(text).expect("good");
+        let signals = model.variables.iter().filter(|v| v.name.starts_with("winch.setpoint") || v.name.starts_with("winch.target"));
+        signals.map(|v| (v.name.clone(), v.causality, v.unit)).collect::<Vec<_>>()
+    };
+    let external = of(SCENES[0].text);
+    assert_eq!(external.len(), 2);
+    assert!(external.iter().all(|(name, causality, _)| name.starts_with("winch.setpoint") && *causality == Causality::Input));
+    for setpoint in ["simplified_sheave", "sheave", "waterline"] {
+        let text = SCENES[0].text.replace("setpoint = \"external\"", &format!("setpoint = \"{setpoint}\""));
+        let signals = |units: [&'static str; 2]| {
+            ["winch.target", "winch.target_rate"]
+                .into_iter()
+                .zip(units)
+                .map(|(n, u)| (n.to_owned(), Causality::Output, Some(u)))
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(of(&text), signals(["rad", "rad/s"]));
+        assert_eq!(of(&text.replace("command = \"angle\"", "command = \"payout\"")), signals(["m", "m/s"]));
+    }
+}
+
+#[test]
 fn exact_changed_parameters_reach_the_scene_or_are_named() {
     let model = flume();
     let index = |name: &str| model.leaves.iter().position(|l| l.name == name).expect("there");
