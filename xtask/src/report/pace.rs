@@ -64,7 +64,7 @@ fn ride(bench: &Bench, tries: u32, seconds: f64) -> Result<Pace> {
 /// # Errors
 /// A build that fails, an FMU that refuses.
 pub fn pace(seconds: f64) -> Result<()> {
-    if !(seconds >= 1.0 && seconds <= 1e5) {
+    if !(1.0..=1e5).contains(&seconds) {
         return Err(Failure(format!("--pace {seconds}: expected 1 to 100000 s")));
     }
     println!("building the library (the first build takes a while)");
