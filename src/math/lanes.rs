@@ -3,6 +3,8 @@
 //! Kernels are plain functions of one point. A loop over the lanes that calls one, reading and writing [`Lanes`], is what the compiler turns
 //! into SIMD; so such a loop must hold no call that is not inlined and no branch on what differs between the lanes but a choice of two numbers.
 
+pub use super::dispatch::{Kernel, widest};
+
 /// `W` numbers side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(64))]
@@ -31,33 +33,6 @@ pub fn set_lane<const W: usize, const N: usize>(x: &mut [Lanes<W>; N], l: usize,
     for c in 0..N {
         x[c].0[l] = v[c];
     }
-}
-
-/// A computation worth compiling for the widest registers of the processor at hand. (A trait, because a closure cannot be made to be inlined.)
-pub trait Kernel {
-    /// Its result.
-    type Output;
-
-    /// Computes it; to be marked `#[inline(always)]`, like all that it calls in its loops.
-    fn run(self) -> Self::Output;
-}
-
-/// Runs a kernel compiled for this processor. Rounding does not depend on the processor: products and sums are not fused.
-pub fn widest<K: Kernel>(kernel: K) -> K::Output {
-    #[cfg(target_arch = "x86_64")]
-    {
-        #[target_feature(enable = "avx2")]
-        fn avx2<K: Kernel>(kernel: K) -> K::Output {
-            kernel.run()
-        }
-        // No AVX-512: it brought a fifth, and valgrind, with which the life cycle is looked at, ends with an illegal instruction.
-        if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the feature that the function is compiled for was just detected.
-            #[allow(unsafe_code)]
-            return unsafe { avx2(kernel) };
-        }
-    }
-    kernel.run()
 }
 
 /// A 3-vector.

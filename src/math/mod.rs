@@ -1,6 +1,7 @@
 //! Small mathematics that several rooms share.
 
 pub mod chebyshev2;
+pub mod dispatch;
 pub mod interpolation;
 pub mod jet;
 pub mod lanes;
