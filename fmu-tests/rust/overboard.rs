@@ -143,15 +143,16 @@ fn exact_seaway_runs_stably_and_its_extremes_converge() {
     }
 }
 
-/// Greatest and root mean square heave of the stern sheave and of the body, and the tension's range, once the start is over, over two minutes.
+/// Greatest and root mean square heave of the stern sheave and of the body, and the tension's range, from 5 to 10 s: the sea is
+/// there, and more than half a wave passes. (Two minutes give the same shares; wire that runs over the sheave takes 2000 sub-steps a second.).
 fn residuals(scene: &Scene, inputs: impl Fn(f64) -> Inputs + Copy) -> ([f64; 2], [f64; 2], [f64; 2]) {
     let sheave = scene.sheaves[0].position;
     let mut sim = started(scene, &inputs(0.0));
     let (mut ship, mut body, mut tension) = (vec![], vec![], [f64::INFINITY, 0.0f64]);
-    run(&mut sim, 0.05, 120.0, inputs, |t, o| {
+    run(&mut sim, 0.05, 10.0, inputs, |t, o| {
         let [x, y, z, roll, pitch, yaw] = inputs(t).ship.map(|c| c.value);
         let at = nalgebra::Vector3::new(x, y, z) + nalgebra::Rotation3::from_euler_angles(roll, pitch, yaw) * sheave;
-        if t > 20.0 {
+        if t > 5.0 {
             ship.push(at.z);
             body.push(o.body.position.z);
             tension = [tension[0].min(o.winch.tension), tension[1].max(o.winch.tension)];
@@ -200,9 +201,11 @@ fn exact_an_ideal_winch_leaves_a_twentieth_of_the_heave() {
     };
     // All of it arrives without.
     assert!(report("external", false)[1] > 0.9);
+    // With the winch that the scene has: ω²/k1 = 0.6/25 of the heave is left by the controller.
+    assert!(report("simplified_sheave", false)[1] < 0.05);
     for setpoint in ["simplified_sheave", "sheave", "waterline"] {
-        report(setpoint, false);
         let share = report(setpoint, true);
+        // The wire stands a few degrees off the plumb line (sin² θ), and stretches.
         assert!(share[0] < 0.05 && share[1] < 0.05, "{setpoint}: {share:?}");
     }
 }
