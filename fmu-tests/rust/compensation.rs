@@ -30,7 +30,7 @@ fn text(setpoint: &str, wheel: bool, body: &str) -> String {
         format!("[[sheave]]\nposition = {CENTRE:?}\naxis = [0, 1, 0]\nradius = {:?}\nside = \"over\"\nstiffness = 1e9\n", WHEEL - 0.005);
     format!(
         "name = \"hang\"\ngravity = {G:?}\n[cable]\nlength = 20.0\ndiameter = 0.01\nmass_per_length = 0.05\nEA = 1e6\nEI = 0.05\n\
-         damping.axial = 2e3\n[mesh]\nregions = [{{ length = 8.0, elements = 50 }}, {{ length = 12.0, elements = 6 }}]\n\
+         damping.axial = 2e3\n[mesh]\nregions = [{{ length = 8.0, elements = 100 }}, {{ length = 12.0, elements = 6 }}]\n\
          [ship]\ninput = \"pose_velocity_acceleration\"\n[winch]\nposition = [0, 0.5, 0]\naxis = [0, 1, 0]\nradius = {:?}\nangle = {PI:?}\n\
          gain_position = 4e4\ngain_rate = 400\nstiffness = 1e9\nend = \"tangent\"\nsetpoint = \"{setpoint}\"\n{}\
          [fluid]\ndensity = 1e-6\nwaterline = {WATER:?}\ndrag = {{ law = \"cross_flow\", cd_normal = 0, cd_tangential = 0 }}\n\
