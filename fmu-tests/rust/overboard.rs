@@ -142,3 +142,71 @@ fn exact_seaway_runs_stably_and_its_extremes_converge() {
         assert!(solver.energy_error < 1e-2, "{}", solver.energy_error);
     }
 }
+
+/// Greatest and root mean square heave of the stern sheave and of the body, and the tension's range, from 5 to 10 s: the sea is
+/// there, and more than half a wave passes. (Two minutes with the scene's winch give the same share; wire that runs over the sheave takes
+/// 2000 sub-steps a second.)
+fn residuals(scene: &Scene, inputs: impl Fn(f64) -> Inputs + Copy) -> ([f64; 2], [f64; 2], [f64; 2]) {
+    let sheave = scene.sheaves[0].position;
+    let mut sim = started(scene, &inputs(0.0));
+    let (mut ship, mut body, mut tension) = (vec![], vec![], [f64::INFINITY, 0.0f64]);
+    run(&mut sim, 0.05, 10.0, inputs, |t, o| {
+        let [x, y, z, roll, pitch, yaw] = inputs(t).ship.map(|c| c.value);
+        let at = nalgebra::Vector3::new(x, y, z) + nalgebra::Rotation3::from_euler_angles(roll, pitch, yaw) * sheave;
+        if t > 5.0 {
+            ship.push(at.z);
+            body.push(o.body.position.z);
+            tension = [tension[0].min(o.winch.tension), tension[1].max(o.winch.tension)];
+        }
+    });
+    let spread = |z: &[f64]| {
+        let mean = z.iter().sum::<f64>() / z.len() as f64;
+        let square = z.iter().map(|z| (z - mean).powi(2)).sum::<f64>() / z.len() as f64;
+        [z.iter().map(|z| (z - mean).abs()).fold(0.0, f64::max), square.sqrt()]
+    };
+    (spread(&ship), spread(&body), tension)
+}
+
+#[test]
+fn exact_an_ideal_winch_leaves_a_twentieth_of_the_heave() {
+    let with = |setpoint: &str, ideal: bool| {
+        let mut text = SCENE.replace("command = \"payout\"", &format!("command = \"payout\"\nsetpoint = \"{setpoint}\""));
+        if ideal {
+            for (old, new) in [("gain_position = 25.0 ", "gain_position = 4e4 "), ("gain_rate = 10.0", "gain_rate = 400.0")] {
+                assert!(text.contains(old));
+                text = text.replace(old, new);
+            }
+            for limit in ["max_rate = 4.0", "max_acceleration = 8.0"] {
+                assert!(text.contains(limit));
+                text = text.replace(limit, "");
+            }
+        }
+        SceneFile::parse(&text, "overboard.toml").and_then(|f| f.check(None)).expect("a right scene")
+    };
+    let report = |setpoint: &str, ideal: bool| {
+        let (ship, body, tension) = residuals(&with(setpoint, ideal), sea);
+        let share = [body[0] / ship[0], body[1] / ship[1]];
+        println!(
+            "{setpoint}, {}: sheave heaves {:.3} m (rms {:.3}), body {:.4} m (rms {:.4}): {:.1} % (rms {:.1} %); winch.tension {:.0} to {:.0} N",
+            if ideal { "ideal winch" } else { "the scene's winch" },
+            ship[0],
+            ship[1],
+            body[0],
+            body[1],
+            100.0 * share[0],
+            100.0 * share[1],
+            tension[0],
+            tension[1]
+        );
+        share
+    };
+    // All of it arrives without.
+    assert!(report("external", false)[1] > 0.9);
+    // With the winch that the scene has: ω²/k1 = 0.6/25 of the heave is left by the controller.
+    assert!(report("simplified_sheave", false)[1] < 0.05);
+    for setpoint in ["simplified_sheave", "sheave", "waterline"] {
+        let share = report(setpoint, true);
+        // The wire stands a few degrees off the plumb line (sin² θ), and stretches.
+        assert!(share[0] < 0.05 && share[1] < 0.05, "{setpoint}: {share:?}");
+    }
+}

@@ -33,3 +33,25 @@ of wire over the stern of an 80 m ship in seas of 2.5 m, whose motions have peri
 derivatives of order 1 and 2 are as good as the inputs for velocity and acceleration: they give the same motion. No form holds the pose still
 within a step: the FMU continues the highest derivative that it has by the parabola through its last three values.</p>
 ";
+
+/// The built-in set-points; in the documentation of FMUs that have one.
+pub const COMPENSATION: &str = "<h2 id=\"compensation\">Heave compensation</h2>
+<p>The winch of this FMU has a built-in set-point (<code>winch.setpoint</code> in the scene file) instead of the inputs <code>winch.setpoint</code> and
+<code>winch.setpoint_rate</code>. What the controller is told is the output <code>winch.target</code>, to be compared with <code>winch.angle</code>, or with
+<code>winch.payout</code> where <code>command = \"payout\"</code>. With r<sub>s</sub> the point that the cable hangs from, u the unit vector down the cable
+there, and index 0 for the start of the run, the length to be paid out since then is</p>
+<table>
+<tr><td>simplified_sheave</td><td>&minus;u<sub>0</sub>&middot;(r<sub>s</sub> &minus; r<sub>s0</sub>)</td></tr>
+<tr><td>sheave</td><td>&minus;u&middot;(r<sub>s</sub> &minus; r<sub>s0</sub>), u the present direction</td></tr>
+<tr><td>waterline</td><td>|r<sub>s</sub> &minus; r<sub>w</sub>| &minus; |r<sub>s0</sub> &minus; r<sub>w</sub>|, r<sub>w</sub> where the line from r<sub>s0</sub>
+along u<sub>0</sub> meets the still water</td></tr>
+</table>
+<p>r<sub>s</sub> is a point of the ship: where the cable leaves the last sheave at the start, or the drum's top in a scene without sheaves. u is the cable's
+direction where it is straight, three bending lengths &radic;(EI/T) and half a wheel's radius farther on. So initialize with the ship at its mean
+pose and at rest: that is what these set-points take for the mean. The mean does not follow a ship that sails or drifts away; let the current flow past
+it instead. The present direction passes a low-pass filter (critically damped, of corner 8&nbsp;&radic;(g/L), L the length that hangs), without which the winch
+could feed the cable's own transverse waves; the ship's motion does not pass it. The set-point goes with its rate to the controller
+&phi;&#776; = k<sub>1</sub>(&phi;<sub>SP</sub> &minus; &phi;) + k<sub>2</sub>(&phi;&#775;<sub>SP</sub> &minus; &phi;&#775;), which then lags by about
+&omega;&sup2;/k<sub>1</sub> of a motion of angular frequency &omega;; give the ship's velocities for it. Along a line at an angle &theta; from the plumb line a slow heave z
+leaves z sin&sup2;&theta; at the body even so.</p>
+";

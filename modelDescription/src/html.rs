@@ -1,6 +1,6 @@
 //! documentation/index.html, written from the same tables as the interface.
 
-use crate::advice::{ADVICE, DERIVATIVES};
+use crate::advice::{ADVICE, COMPENSATION, DERIVATIVES};
 use crate::document::{LOG_CATEGORIES, STATUS_CODES};
 use crate::keys::{Constant, GROUPS, KEYS, Presence};
 use crate::notes::notes;
@@ -27,6 +27,9 @@ pub fn page(d: &Document) -> String {
     p += if d.shape.ned { FRAMES_NED } else { FRAMES_Z_UP };
     p += SIGNS;
     p += STEPS;
+    if d.shape.winch && !d.shape.external_setpoint {
+        p += COMPENSATION;
+    }
     p += DERIVATIVES;
     p += ADVICE;
     p += "<h2 id=\"variables\">Inputs and outputs</h2>\n";

@@ -349,7 +349,7 @@ pub static KEYS: &[Key] = &[
     key(1091, "winch.command", Choice(&["angle", "payout"]), text("angle"), "What the set-point is"),
     key(1092, "winch.end", Choice(&["pinned", "tangent"]), text("pinned"), "Slope of the cable's first node: free, or along the drum's tangent"),
     key(1093, "winch.direction", OneOf(&[-1, 1]), Default(Constant::Integer(-1)), "-1: the cable leaves towards negative angles, so that a decreasing angle pays out; 1: the mirror image"),
-    key(1094, "winch.setpoint", Choice(&["external", "simplified_sheave", "sheave", "waterline"]), text("external"), "Source of the set-point: an input, or a built-in heave compensation"),
+    key(1094, "winch.setpoint", Choice(&["external", "simplified_sheave", "sheave", "waterline"]), text("external"), "Source of the set-point: an input, or a built-in heave compensation. simplified_sheave pays out what the last sheave (or the drum's top) has moved against the cable's direction at the start, sheave against its present direction; waterline keeps the cable where it met the water at the start. The built-in ones need [ship], waterline [fluid] too"),
 
     key(1100, "anchor.position", Vector(&u::POSITION), Required, "Where the cable's first end is fixed, ship axes"),
 

@@ -243,11 +243,11 @@ pub struct Winch {
 pub enum Setpoint {
     /// The FMU's input.
     External,
-    /// Pays out Δl = −u·Δr_s, u the cable's mean direction at the winch.
+    /// Pays out Δl = −u·Δr_s, u the cable's direction at the start where it leaves the last sheave (or the drum).
     SimplifiedSheave,
     /// The same with u the cable's present direction.
     Sheave,
-    /// Keeps the length from the sheave to the water plus the body's depth.
+    /// Keeps the cable where it met the water at the start, and so the body's depth below.
     Waterline,
 }
 
