@@ -194,7 +194,7 @@ const IMPLIED: Presence = Default(Constant::Flag(true));
 pub static GROUPS: &[Group] = &[
     group("", IMPLIED, false, "The scene"),
     group("cable", Required, false, "The cable's section"),
-    group("mesh", Required, false, "Finite elements: either elements or regions"),
+    group("mesh", Required, false, "Finite elements: elements of equal length, regions, or an error to grade them by"),
     group("mesh.regions", Optional, true, "Stretches of cable with elements of equal length, from the first end; they sum to cable.length"),
     group("fluid", Optional, false, "Water; without it, vacuum"),
     group("fluid.current.noise", Optional, false, "Turbulence of the current, uniform in space: white noise through a Chebyshev-II low-pass, added to profile and inputs; the same for the same seed and time. A static start does not feel it"),
@@ -311,6 +311,8 @@ pub static KEYS: &[Key] = &[
     key(1023, "cable.damping.coefficient", Real(&u::AXIAL_DAMPING, NotNegative), Required, "Coefficient of the gradient-rate damping").when(Is("damping.model", &["gradient_rate"])),
 
     key(1040, "mesh.elements", Integer(1, 100_000), Optional, "Number of elements of equal length"),
+    key(1043, "mesh.error", Real(&u::RATIO, Inside(0.0, 1.0)), Optional, "Relative error of tensions for which elements are chosen: short where the cable lies or will lie on drum and sheaves, longer away from them"),
+    key(1044, "mesh.travel", Real(&u::LENGTH, NotNegative), Optional, "The most that is paid out or reeled in during a run, for mesh.error; two drum diameters if left out").when(Given("error")),
     key(1041, "mesh.regions.length", Real(&u::LENGTH, Positive), Required, "Unstretched length of the region"),
     key(1042, "mesh.regions.elements", Integer(1, 100_000), Required, "Number of elements of the region"),
 

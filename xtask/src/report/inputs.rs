@@ -102,7 +102,7 @@ fn tensions(fmu: &Fmu, form: &Form, step: f64, tolerance: Option<f64>) -> Result
 /// The FMU's.
 pub fn section(bench: &Bench) -> Result<Section> {
     let scene = || Scene::built_in("overboard")?.ok_or_else(|| Failure("there is no built-in scene overboard".into()));
-    let pack = |form: &Form| bench.pack(&scene()?.with("ship.input", form.input));
+    let pack = |form: &Form| bench.pack(&scene()?.with("solver.method", "rodas4").with("ship.input", form.input));
     let fmus = FORMS.iter().map(pack).collect::<Result<Vec<_>>>()?;
     let (pose, velocity, full) = (0, 1, 2);
     // The reference takes longest, so it comes first.
