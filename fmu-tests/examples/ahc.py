@@ -73,14 +73,12 @@ class Estimator:
         # The noise's covariance over a step: the integral of g gᵀ with g = exp(A s) (0, 0, 1), by the midpoint rule.
         g = [transition(omega, (k + 0.5) / 16 * h)[:, 2] for k in range(16)]
         noise = settings.jerk * h / 16 * sum(np.outer(v, v) for v in g)
-        covariance = np.eye(3)
-        for _ in range(20_000):
+        covariance, self.gain = np.eye(3), np.zeros((3, 2))
+        for _ in range(5000):
             prior = self.advance @ covariance @ self.advance.T + noise
-            self.gain = np.linalg.solve(measure @ prior @ measure.T + variance, measure @ prior).T
-            after = (np.eye(3) - self.gain @ measure) @ prior
-            settled = np.allclose(after, covariance, rtol=1e-9, atol=0.0)
-            covariance = after
-            if settled:
+            before, self.gain = self.gain, np.linalg.solve(measure @ prior @ measure.T + variance, measure @ prior).T
+            covariance = (np.eye(3) - self.gain @ measure) @ prior
+            if np.abs(self.gain - before).max() < 1e-9 * np.abs(self.gain).max():
                 break
         self.state = np.zeros(3)
 

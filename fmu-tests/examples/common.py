@@ -4,6 +4,7 @@ import csv
 import math
 import os
 import subprocess
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -38,13 +39,23 @@ def xtask(*arguments):
     return done.stdout
 
 
-def packed(scene):
-    """Path of the FMU of a built-in scene or a scene file, packed now: with the library built before it takes a second."""
-    return Path(xtask("package", scene).splitlines()[-1])
+def packed(scene, out=None):
+    """Path of the FMU of a built-in scene or a scene file, packed now, as `out` or in target/fmu: with the library built before it takes a second."""
+    return Path(xtask("package", scene, *([] if out is None else ["--out", out])).splitlines()[-1])
+
+
+def variant(text, folder):
+    """Packs a scene given as TOML text as NAME.fmu in a folder, beside its NAME.toml; returns the FMU's path."""
+    folder = Path(folder).resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    name = tomllib.loads(text)["name"]
+    (folder / f"{name}.toml").write_text(text, encoding="utf-8")
+    return packed(folder / f"{name}.toml", folder / f"{name}.fmu")
 
 
 def motion(path, **options):
     """Ship motion by `cargo xtask ship-motion` with its options (underscores for hyphens): times (s) and the 18 values of SHIP, [time][18]."""
+    path = Path(path).resolve()
     arguments = [f"--{name.replace('_', '-')}={value}" for name, value in options.items()]
     xtask("ship-motion", *arguments, "--out", path)
     with open(path, newline="") as file:

@@ -46,15 +46,16 @@ def thinned(line, most=1200):
     stretch = 2 * math.ceil(len(x) / most)
     if stretch < 4:
         return x, y
-    kept = []
+    kept = [0]
     for k in range(0, len(x), stretch):
         part = range(k, min(k + stretch, len(x)))
         kept += sorted({min(part, key=y.__getitem__), max(part, key=y.__getitem__)})
+    kept = sorted({*kept, len(x) - 1})
     return [x[k] for k in kept], [y[k] for k in kept]
 
 
-def chart(title, lines, x_label, y_label, height=HEIGHT, zero=False, logarithmic=False):
-    """SVG text; `zero` draws the y axis from zero on, `logarithmic` takes decimal logarithms of both."""
+def chart(title, lines, x_label, y_label, height=HEIGHT, zero=False, whole=False, logarithmic=False):
+    """SVG text; `zero` draws the y axis from zero on, `whole` marks whole numbers of x only, `logarithmic` takes decimal logarithms of both."""
     curves = [(line, *thinned(line)) for line in lines]
     curves = [(line, *zip(*[(a, b) for a, b in zip(x, y) if math.isfinite(a) and math.isfinite(b)])) for line, x, y in curves]
     if logarithmic:
@@ -76,6 +77,8 @@ def chart(title, lines, x_label, y_label, height=HEIGHT, zero=False, logarithmic
     power = lambda k, _: f"{10.0**k:.0e}" if k < -3 or k > 4 else f"{10.0**k:g}"
     for vertical, (low, high, wanted) in ((False, (x0, x1, 8)), (True, (y0, y1, 4))):
         marks, step = ticks(low, high, wanted)
+        if whole and not vertical:
+            marks, step = list(range(math.ceil(low), math.floor(high) + 1)), 1
         text = number
         if logarithmic:
             marks = [k + math.log10(f) for k in range(math.floor(low), math.ceil(high) + 1) for f in (1, 2, 5)]
@@ -111,7 +114,8 @@ def chart(title, lines, x_label, y_label, height=HEIGHT, zero=False, logarithmic
 
 STYLE = """body { font: 15px/1.5 sans-serif; color: #333; max-width: 960px; margin: 2em auto; padding: 0 1em }
 h1 { font-size: 1.5em } h2 { font-size: 1.15em; margin-top: 2em }
-.wide { overflow-x: auto } table { border-collapse: collapse; font-size: 13px } th, td { padding: 3px 9px; border-bottom: 1px solid #ddd; text-align: right }
+.wide { overflow-x: auto } table { border-collapse: collapse; font-size: 13px }
+th, td { padding: 3px 9px; border-bottom: 1px solid #ddd; text-align: right }
 th { border-bottom: 2px solid #999; vertical-align: bottom } td:nth-child(-n+2), th:nth-child(-n+2) { text-align: left; white-space: nowrap }
 tr.first td { border-top: 2px solid #bbb } svg { width: 100%; height: auto; display: block; margin: .6em 0 }"""
 

@@ -22,7 +22,7 @@ from pathlib import Path
 
 import ahc
 import numpy as np
-from common import ROOT, SCENES, SEA_STATES, SHIP, Failure, motion, packed, rotation, table, turning, write_csv
+from common import ROOT, SCENES, SEA_STATES, SHIP, Failure, motion, rotation, table, turning, variant, write_csv
 from figures import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, Line, chart, html_table, page
 from slave import FmpySlave, Variables
 
@@ -39,7 +39,7 @@ IDEAL_WINCH = {"winch.gain_position": 1e4, "winch.gain_rate": 200.0, "winch.max_
 RECORD = {
     "body_z": "body.z", "tension": "winch.tension", "payout": "winch.payout", "rate": "winch.rate", "torque": "winch.torque",
     "line_load_min": "sheave[1].line_load_min", "tension_min": "cable.tension_min",
-}  # fmt: skip
+}
 
 
 def deep_scene(setpoint="external"):
@@ -59,15 +59,6 @@ def deep_scene(setpoint="external"):
             raise Failure(f"overboard.toml: expected `{old}` once; this example changes it")
         text = text.replace(old, new)
     return text
-
-
-def pack(setpoint, folder):
-    """Packs the variant; returns the FMU's path."""
-    text = deep_scene(setpoint)
-    path = folder / (text.split('"', 2)[1] + ".toml")
-    folder.mkdir(parents=True, exist_ok=True)
-    path.write_text(text, encoding="utf-8")
-    return packed(path)
 
 
 class Hang:
@@ -110,7 +101,7 @@ COLUMNS = [
     ("heave_rms", "sheave m", ".3f"), ("residual_rms", "body m", ".4f"), ("share", "share %", ".2f"), ("tension_least", "T min kN", ".2f"),
     ("tension_greatest", "T max kN", ".2f"), ("line_load_least", "load kN/m", ".2f"), ("detached", "detached %", ".2f"),
     ("power_mean", "power kW", ".2f"), ("power_peak", "peak kW", ".1f"), ("rate_peak", "rate m/s", ".2f"), ("clipped", "clipped %", ".2f"),
-]  # fmt: skip
+]
 
 
 def drive(fmu, way, times, ship, settings, parameters):
@@ -157,7 +148,7 @@ def results(series, ramp, radius, max_rate):
         "line_load_least": 1e-3 * after["line_load_min"].min(), "detached": 100.0 * np.mean(after["line_load_min"] <= 0.0),
         "power_mean": 1e-3 * np.abs(power).mean(), "power_peak": 1e-3 * np.abs(power).max(),
         "rate_peak": radius * np.abs(after["rate"]).max(), "clipped": 100.0 * np.mean(np.abs(after["rate"]) > 0.999 * max_rate),
-    }  # fmt: skip
+    }
 
 
 def run_case(fmu, way, state, sea, settings, ramp):
@@ -206,7 +197,7 @@ def report(runs, ramp, folder, explained):
     if len(states) > 1:
         shares = [(way, [run for run in runs if run.way == way]) for way in ways if way != HELD]
         lines = [Line(way, [r.state for r in of_way], [r.results["share"] for r in of_way], COLOURS[way], marks=True) for way, of_way in shares]
-        parts.append(chart("What remains of the heave at the sheave", lines, "sea state", "body heave, %", zero=True))
+        parts.append(chart("What remains of the heave at the sheave", lines, "sea state", "body heave, %", zero=True, whole=True))
     for state in states:
         runs_here = of(state)
         parts.append(f"<h2>Sea state {state}: significant wave height {SEA_STATES[state][0]} m, peak period {SEA_STATES[state][1]} s</h2>")
@@ -259,9 +250,9 @@ def main():
     states, built_in = chosen(args)
     given = {name: value for name in vars(ahc.Settings()) if (value := getattr(args, name)) is not None}
     args.out.mkdir(parents=True, exist_ok=True)
-    external = pack("external", args.out / "scenes")
+    external = variant(deep_scene(), args.out / "scenes")
     fmus = {HELD: external, EXTERNAL: external}
-    fmus.update((name, pack(name, args.out / "scenes")) for name in built_in)
+    fmus.update((name, variant(deep_scene(name), args.out / "scenes")) for name in built_in)
     if args.ideal:
         fmus[IDEAL] = external
     jobs = []
@@ -274,7 +265,8 @@ def main():
         begin = time.monotonic()
         for job, future in [(job, pool.submit(run_case, *job)) for job in jobs]:
             runs.append(future.result())
-            print(f"sea state {job[2]}, {job[1]}: body {runs[-1].results['share']:.2f} % of the sheave's heave ({time.monotonic() - begin:.0f} s)", flush=True)
+            share, seconds = runs[-1].results["share"], time.monotonic() - begin
+            print(f"sea state {job[2]}, {job[1]}: body {share:.2f} % of the sheave's heave ({seconds:.0f} s)", flush=True)
     head, body = rows(runs)
     print("\n" + table(head, body) + "\n")
     explained = (

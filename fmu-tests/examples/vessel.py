@@ -5,7 +5,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from common import turning
+from common import rotation, turning
 
 GRAVITY, DENSITY = 9.81, 1025.0
 
@@ -52,7 +52,8 @@ class Hull:
         weight = GRAVITY * self.displacement
         station = (2.0 * math.pi / self.station_period) ** 2
         surge, sway, _, _, _, yaw = self.inertia
-        return np.array([station * surge, station * sway, DENSITY * GRAVITY * self.waterplane, weight * transverse, weight * longitudinal, station * yaw])
+        heave = DENSITY * GRAVITY * self.waterplane
+        return np.array([station * surge, station * sway, heave, weight * transverse, weight * longitudinal, station * yaw])
 
     @property
     def inertia(self):
@@ -126,9 +127,12 @@ def generalized(force, moment, angles):
 
 
 def suspended(hull, weights):
-    """Closed form of what weights on board do, if those that hang do so plumb: z, roll, pitch (m, rad) from rows of weight (N) and place (ship axes,
-    m). A hanging weight counts at the point that it hangs from. C33 z = -W; C44 roll = -W (y - z roll); C55 pitch = W (x + z pitch)."""
+    """What weights on board do, by hydrostatics alone: z, roll, pitch (m, rad), from rows of weight (N) and place (ship axes, m). A weight that hangs
+    plumb counts at the point that it hangs from. Roll turns it from y to y cos(roll) - z sin(roll), and so the moments are solved for anew."""
     weights = np.asarray(weights)
-    total, x, y, z = weights[:, 0].sum(), *(weights[:, 0] @ weights[:, 1:])
-    heave, roll, pitch = hull.stiffness[2:5]
-    return -total / heave, -y / (roll - z), x / (pitch - z)
+    total, moment = weights[:, 0].sum(), weights[:, 0] @ weights[:, 1:]
+    angles = np.zeros(3)
+    for _ in range(50):
+        down = -rotation(angles)[2]
+        angles = generalized([0.0, 0.0, -total], np.cross(moment, down), angles)[3:] / hull.stiffness[3:]
+    return -total / hull.stiffness[2], angles[0], angles[1]
