@@ -3,6 +3,7 @@
 //! One file a section; each packs the scenes it needs and returns a [`Section`]. A further section is a further line in [`SECTIONS`].
 
 mod bench;
+mod cost;
 mod dynamics;
 mod edge;
 mod flume;

@@ -4,6 +4,7 @@
 //! Times belong to the machine that the page names: compare them with each other, not with another page's.
 
 use super::bench::{Bench, Drive, record};
+use super::cost;
 use super::numerics::{pairs, relative_rms, table};
 use super::row::share;
 use super::scene::{G, HEAVED, HEAVY_WIRE, NYLON, Scene, Wire, heave};
@@ -16,7 +17,7 @@ use crate::plots::{Chart, PALETTE, Panel, Series};
 /// Work-precision diagrams of every time integrator, as fmu-tests/bench
 #[derive(clap::Args)]
 pub struct Args {
-    /// Only the scenes whose name contains this; prints the table and writes nothing
+    /// Only the scenes whose name contains this, or what things cost (`cost`); prints the tables and writes nothing
     #[arg(long, value_name = "NAME")]
     only: Option<String>,
     /// Instead: how long each communication step of `overboard` takes over so many seconds in a seaway, with and without solver.tries_max;
@@ -214,9 +215,10 @@ pub fn bench(args: Args) -> Result<()> {
         return super::pace::pace(seconds);
     }
     let all = cases()?;
+    let costs = args.only.as_deref().is_none_or(|only| only == "cost");
     let chosen: Vec<&Case> = all.iter().filter(|c| args.only.as_ref().is_none_or(|only| c.name.contains(only.as_str()))).collect();
-    if chosen.is_empty() {
-        let names: Vec<_> = all.iter().map(|c| c.name).collect();
+    if chosen.is_empty() && !costs {
+        let names: Vec<_> = all.iter().map(|c| c.name).chain(["cost"]).collect();
         return Err(Failure(format!("--only {}: no such scene; there are {}", args.only.unwrap_or_default(), names.join(", "))));
     }
     println!("building the library (the first build takes a while)");
@@ -232,6 +234,9 @@ pub fn bench(args: Args) -> Result<()> {
             numbers.iter_mut().zip(row).for_each(|(column, x)| column.push(x));
         }
         sections.push(section(case, &points));
+    }
+    if costs {
+        sections.extend(cost::sections(&bench)?);
     }
     if args.only.is_some() {
         return Ok(());
