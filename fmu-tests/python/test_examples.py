@@ -5,6 +5,7 @@ import subprocess
 import sys
 import tomllib
 import xml.etree.ElementTree as ElementTree
+from copy import deepcopy
 
 import ahc
 import common
@@ -67,7 +68,7 @@ def test_exact_what_the_controllers_leave_of_the_heave(variants, motions):
     assert found[heave_compensation.HELD]["share"] > 95.0 and found[heave_compensation.HELD]["power_peak"] < 1e-6
     # The project's own promise; an inclined line leaves its angle's square, 1 %.
     assert found[heave_compensation.IDEAL]["share"] < 5.0
-    # Delay made up for, noise filtered: measured 3 %, of which most is the noise's 2 mm on 54 mm of heave. Without prediction it is 8 %.
+    # Delay made up for, noise filtered: measured 3 %, of which most is the noise's 2 mm on 54 mm of heave. Without prediction it is 36 %.
     assert found[heave_compensation.EXTERNAL]["share"] < 5.0
 
 
@@ -88,7 +89,7 @@ def test_exact_the_estimator_makes_up_for_the_delay():
             if k > 2000:
                 off = max(off, abs(estimate[0] - truth[0]))
         print(f"swell of {period} s: {off:.2e} m")
-        # The period told is continued exactly, to rounding and what is left of the start; half of it is off by (ω'² − ω²) ω' τ³/6 = 3.4e-4 m.
+        # The period told is continued exactly, to rounding; half of it is off by (ω'² − ω²) ω' τ³/6 = 3.4e-4 m, and a little at the filter.
         assert off < tolerance
     # Taken for prompt, the sensor is 0.1 s late: ω τ of the amplitude.
     sensor, estimator = ahc.Sensor(settings), ahc.Estimator(ahc.Settings(**{**vars(settings), "assumed_delay": 0.0}))
@@ -190,11 +191,10 @@ def test_exact_momentum_passes_between_ship_and_cable(variants):
     for h in (0.04, 0.02):
         _, centre, way, own = vessel_coupling.momentum(fmu, hull, parameters, h, 2.4)
         off.append(np.abs(centre - way).max())
-        print(f"steps of {h} s: {way[-1]:.4f} m, the common centre of mass off by {1e6 * off[-1]:.1f} um, the ship by {1e6 * np.abs(own - way).max():.0f}")
-    # Else the cable would be too light to matter.
-    assert np.abs(own - way).max() > 100 * off[1]
-    # Second order; a scheme of first order would halve it.
-    assert off[1] < 3e-5 and off[0] / off[1] > 3.5
+        print(f"steps of {h} s: {way[-1]:.4f} m, the centre of mass off by {1e6 * off[-1]:.1f} um, the ship by {1e6 * np.abs(own - way).max():.0f}")
+    # The cable holds the ship back by half a millimetre of the 3 mm that a hanging body leaves it ahead of all. The cable's solver, whose
+    # tolerance is 1e-4, misses a thousandth of that; 2 % of the load lost on the way make 8 um.
+    assert max(off) < 1.5e-6 and 2e-3 < np.abs(own - way).max() < 3e-3
 
 
 def test_exact_the_coupling_is_of_second_order(fmus, motions):
@@ -218,12 +218,10 @@ def test_cross_libcosim_couples_to_the_last_bit_as_fmpy_does(fmus):
     # 1/64 s is a whole number of nanoseconds and a binary number, so that both hosts tell the FMU the same times.
     h = 1.0 / 64.0
     parameters = vessel_coupling.placed(Variables(fmu), SMALL, 3.0)
-    runs = []
-    for host in ("fmpy", "libcosim"):
-        vessel = Vessel(SMALL)
-        equilibrium(fmu, vessel, parameters)
-        heave = lambda t: np.array([0.0, 0.0, 1e5 * np.sin(t) ** 2, 0.0, 0.0, 0.0])
-        runs.append(couple(fmu, vessel, h, 20, parameters, ["winch.tension"], host, heave))
+    vessel = Vessel(SMALL)
+    equilibrium(fmu, vessel, parameters)
+    heave = lambda t: np.array([0.0, 0.0, 1e5 * np.sin(t) ** 2, 0.0, 0.0, 0.0])
+    runs = [couple(fmu, deepcopy(vessel), h, 20, parameters, ["winch.tension"], host, heave) for host in ("fmpy", "libcosim")]
     for name, values in runs[0].items():
         assert np.array_equal(values, runs[1][name]), name
     assert np.ptp(runs[0]["winch.tension"]) > 0.1
@@ -235,7 +233,7 @@ def run(name, *options):
 
 
 @pytest.mark.parametrize("name, options, said", [
-    ("heave_compensation", ["--sea-states=3", "--seconds=0.1", "--ramp=0.3", "--built-in=sheave"], "sheave"),
+    ("heave_compensation", ["--sea-states=2", "--seconds=0.1", "--ramp=1", "--built-in=sheave"], "sheave"),
     ("vessel_coupling", ["--seconds=0.2", "--momentum=0", "--converge=0"], "hydrostatics"),
 ])
 def test_exact_the_programs_write_their_tables_and_pages(tmp_path, name, options, said):
@@ -259,7 +257,7 @@ def test_exact_mistakes_are_named():
 
 def test_exact_examples_are_listed_and_others_refused(xtask):
     listed = xtask("example")
-    assert [line.split()[0] for line in listed.stdout.splitlines()] == ["heave_compensation", "vessel_coupling"], listed.stderr
+    assert [line.split()[0] for line in listed.stdout.splitlines()[2:]] == ["heave_compensation", "vessel_coupling"], listed.stderr
     refused = xtask("example", "towing")
     assert refused.returncode == 1 and "expected one of heave_compensation, vessel_coupling" in refused.stderr
 

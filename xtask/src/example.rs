@@ -11,8 +11,11 @@ use std::process::Command;
 
 /// Run an example in Python of fmu-tests/examples
 #[derive(clap::Args)]
+// --help behind an example's name is the example's.
+#[command(disable_help_flag = true)]
 pub struct Args {
     /// Its name; without one they are listed
+    #[arg(allow_hyphen_values = true)]
     name: Option<String>,
     /// Options of the example itself; --help lists them
     #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
@@ -27,7 +30,8 @@ pub fn run(args: Args) -> Result<()> {
     let tests = root().join("fmu-tests");
     let folder = tests.join("examples");
     let examples = examples(&folder)?;
-    let Some(name) = args.name else {
+    let Some(name) = args.name.filter(|name| !name.starts_with('-')) else {
+        println!("cargo xtask example NAME [OPTIONS]; --help behind a name lists its options\n");
         for (name, description) in examples {
             println!("{name:20} {description}");
         }
