@@ -7,12 +7,11 @@ with the winch still, with the controller of `ahc.py` outside the FMU (100 Hz, a
 --ideal, with a perfect sensor and an ideal winch. It prints one table and writes it as CSV, with every run's series and a page of figures,
 to target/examples/heave_compensation. A simulated second takes one or two: with everything it takes half an hour on one core.
 
-The least line load on the sheave is no finer than the mesh: where it comes near zero, as in sea state 6, look again with --refine 2, which
-takes more than twice as long. With elements of 5 cm instead of 10 cm the detachments that the table shows there are gone; heave, tension and
-power stay.
+The least line load on the sheave is no finer than the mesh: where it comes near zero, as in sea state 6, look again with --mesh-error 1e-3, which
+takes about twice as long. With elements of 5 cm instead of 10 cm the detachments that the table shows there are gone.
 
-The scene is a variant of modelDescription/scenes/overboard.toml: one more turn of wire lies on the drum, and the fine part of the mesh is as
-much longer, because a ship in sea state 6 lifts its stern by more than the 2.2 m that the built-in scene can pay out.
+The scene is a variant of modelDescription/scenes/overboard.toml: one more turn of wire lies on the drum, and the mesh is fine as
+much farther from the sheave, because a ship in sea state 6 lifts its stern by more than the 2.2 m that the built-in scene can pay out.
 """
 
 import argparse
@@ -46,18 +45,16 @@ RECORD = {
 }
 
 
-def deep_scene(setpoint="external", refine=1):
-    """TOML text of the variant of `overboard`, named overboard_deep or overboard_deep_SETPOINT, with `refine` elements for one on drum, deck and
-    sheave."""
+def deep_scene(setpoint="external", mesh_error=1e-2):
+    """TOML text of the variant of `overboard`, named overboard_deep or overboard_deep_SETPOINT, with its mesh graded for `mesh_error`."""
     text = (SCENES / "overboard.toml").read_text(encoding="utf-8")
     turn = 2.0 * math.pi * 0.508
     changes = {
         'name = "overboard"': 'name = "overboard_deep"' if setpoint == "external" else f'name = "overboard_deep_{setpoint}"',
         "length = 150.0\n": f"length = {150.0 + turn!r}\n",
         "angle = 4.71238898038469 ": f"angle = {4.71238898038469 + 2.0 * math.pi!r} ",
-        "{ length = 18.0, elements = 180 }": f"{{ length = 12.0, elements = {96 * refine} }}, "
-        f"{{ length = {8.0 + turn!r}, elements = {112 * refine} }}",
-        "{ length = 12.0, elements = 12 }": "{ length = 10.0, elements = 10 }",
+        "error = 1e-2 ": f"error = {mesh_error!r} ",
+        "travel = 2.0\n": "travel = 3.5\n",
         'command = "payout"': f'command = "payout"\nsetpoint = "{setpoint}"',
     }
     for old, new in changes.items():
@@ -230,7 +227,7 @@ def options():
     parser.add_argument("--sea-seed", type=int, default=1, help="of the waves; default 1")
     parser.add_argument("--ideal", action="store_true", help="run a sensor without delay and noise and an ideal winch, too")
     parser.add_argument("--built-in", default="simplified_sheave", metavar="NAME,...", help=f"of {', '.join(BUILT_IN)}, or none")
-    parser.add_argument("--refine", type=int, default=1, metavar="N", help="cut the elements on drum, deck and sheave into N; default 1")
+    parser.add_argument("--mesh-error", type=float, default=1e-2, metavar="X", help="mesh.error of the scene; default 1e-2")
     parser.add_argument("--jobs", type=int, default=1, help="runs at a time; default 1")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of the results")
     controller = parser.add_argument_group("sensor and controller", "see ahc.py")
@@ -257,9 +254,9 @@ def main():
     states, built_in = chosen(args)
     given = {name: value for name in vars(ahc.Settings()) if (value := getattr(args, name)) is not None}
     args.out.mkdir(parents=True, exist_ok=True)
-    external = variant(deep_scene(refine=args.refine), args.out / "scenes")
+    external = variant(deep_scene(mesh_error=args.mesh_error), args.out / "scenes")
     fmus = {HELD: external, EXTERNAL: external}
-    fmus.update((name, variant(deep_scene(name, args.refine), args.out / "scenes")) for name in built_in)
+    fmus.update((name, variant(deep_scene(name, args.mesh_error), args.out / "scenes")) for name in built_in)
     if args.ideal:
         fmus[IDEAL] = external
     jobs = []
@@ -280,7 +277,7 @@ def main():
         f"{args.seconds:g} s after {args.ramp:g} s of ramp. Sheave, body: standard deviations of their heights; share: the body's of the sheave's. "
         "T: tension at the winch. Load: least line load within the sheave's contact arc, run-in left out; detached: time in which it is zero. Power: "
         "drum's torque times rate, mean and peak of its magnitude. Rate: greatest speed of the cable at the drum; clipped: time at max_rate. "
-        "The least line load wants a finer mesh where it nears zero (--refine 2). "
+        "The least line load wants a finer mesh where it nears zero (--mesh-error 1e-3). "
         f"Sensor and controller: {', '.join(f'{k} {v}' for k, v in vars(settings).items() if k not in ('period', 'assumed_delay'))}."
     )
     path = report(runs, args.ramp, args.out, explained)
