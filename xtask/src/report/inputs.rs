@@ -152,7 +152,7 @@ pub fn section(bench: &Bench) -> Result<Section> {
         .text(format!(
             "The scene overboard in a seaway, its ship given at communication points of 1 to 200 ms in five ways. The figure is the greatest error \
              of winch.tension at the multiples of {SAMPLE} s from {FIRST} to {END} s, over its mean of {mean:.0} N; the reference has accelerations \
-             every millisecond and a solver tolerance of {TIGHT:.0e} in place of 1e-4. Between communication points the FMU continues the highest \
+             every millisecond and a solver tolerance of {TIGHT:.0e} in place of 1e-3. Between communication points the FMU continues the highest \
              derivative that it knows by the parabola through its last three values, so that no form is a staircase."
         ))
         .rows(vec![
