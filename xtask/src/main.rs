@@ -27,6 +27,7 @@ mod ship_motion;
 mod test;
 mod toolchain;
 mod validate;
+mod voyage;
 mod xml_tree;
 
 use clap::{Parser, Subcommand};

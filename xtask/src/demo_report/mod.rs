@@ -6,7 +6,7 @@ mod figures;
 mod tables;
 #[cfg(test)]
 mod tests;
-mod units;
+pub mod units;
 
 use crate::error::Failure;
 use crate::html_report::Page;
