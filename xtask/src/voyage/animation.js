@@ -191,7 +191,7 @@ class View {
     this.pen.fillText(text, q[0] + dx, q[1] + dy);
   }
 
-  sea() {
+  sea(middle) {
     if (scene.waterline === null) return;
     const z = scene.waterline;
     if (Math.abs(angles[1]) < 0.02) {
@@ -205,8 +205,8 @@ class View {
       this.pen.stroke();
       return;
     }
-    const size = 0.7 * Math.min(this.width, this.height) / this.scale, step = 10 ** Math.floor(Math.log10(size)) / 2;
-    const [cx, cy] = [this.centre[0], this.centre[1]].map(c => step * Math.round(c / step));
+    const size = 0.45 * Math.min(this.width, this.height) / this.scale, step = 10 ** Math.round(Math.log10(size / 5));
+    const [cx, cy] = [middle[0], middle[1]].map(c => step * Math.round(c / step));
     const n = Math.ceil(size / step), corner = (i, j) => [cx + i * step, cy + j * step, z];
     this.path([corner(-n, -n), corner(n, -n), corner(n, n), corner(-n, n)], true);
     this.pen.fillStyle = "#3b8ec21f";
@@ -240,12 +240,12 @@ class View {
   draw(now) {
     this.pen.clearRect(0, 0, this.width, this.height);
     this.pen.font = "12px system-ui, sans-serif";
-    this.sea();
+    this.sea(now.points[0]);
     const size = Math.min(this.width, this.height) / this.scale, held = [now.drum, ...now.sheaves].filter(Boolean).map(wheel => wheel.centre);
     if (scene.anchor) held.push(now.ship.place(scene.anchor));
     held.forEach(p => this.line([now.ship.origin, p], "#a9b3bd", 1, [3, 4]));
     [["x", "#b5483d"], ["y", "#4a8a4f"], ["z", "#4466aa"]].forEach(([name, colour], i) => {
-      const end = add(now.ship.origin, now.ship.turned([0, 1, 2].map(k => k === i ? 0.09 * size : 0)));
+      const end = add(now.ship.origin, now.ship.turned([0, 1, 2].map(k => k === i ? 0.055 * size : 0)));
       this.line([now.ship.origin, end], colour, 1.6);
       this.text(end, name, colour, 3, -3);
     });
@@ -256,7 +256,7 @@ class View {
       this.wheel(sheave, off ? ALARM : out ? SLIP : STEEL, name, value(`sheave[${i + 1}].angle`, now.frame));
     });
     if (scene.anchor) { const q = this.at(now.ship.place(scene.anchor)); this.pen.fillStyle = STEEL; this.pen.fillRect(q[0] - 4, q[1] - 4, 8, 8); }
-    this.line(now.cable, flag("cable.slack", now.frame, 0) ? ALARM : "#111820", 1.8);
+    this.line(now.cable, "#111820", 1.8);
     now.arcs.forEach(wrap => wrap && this.line(wrap.arc, "#009e73", 3.5));
     if (now.tip) {
       this.line([now.points[now.points.length - 1], now.tip], STEEL, 3);
@@ -329,7 +329,7 @@ function draw() {
     flag(`sheave[${i + 1}].in_contact`, now.frame, 1) ? "" : `off the ${sheave.wheel.name}`,
     flag(`sheave[${i + 1}].out_of_groove`, now.frame, 0) ? `out of the groove of the ${sheave.wheel.name}` : "",
   ]);
-  if (flag("cable.slack", now.frame, 0)) alarms.push("slack cable");
+  if (flag("cable.slack", now.frame, 0)) alarms.push("some of the cable is slack");
   byId("alarm").textContent = alarms.filter(Boolean).join(", ");
   byId("time").textContent = `t = ${seconds().toFixed(2)} s`;
   if (+byId("slider").value !== frame) byId("slider").value = frame;

@@ -113,7 +113,9 @@ fn sources<'a>(record: &'a Record, shown: &[usize], tip: Option<&str>) -> Vec<So
     }
     add("cable.slack".to_owned(), "cable.slack", 1.0, true);
     for i in 1..=record.scene.sheaves.len() {
-        for (what, flag) in [("contact_begin", false), ("contact_end", false), ("angle", false), ("in_contact", true), ("out_of_groove", true)] {
+        for (what, flag) in
+            [("contact_begin", false), ("contact_end", false), ("angle", false), ("in_contact", true), ("out_of_groove", true)]
+        {
             let name = format!("sheave[{i}].{what}");
             add(name.clone(), &name, 1.0, flag);
         }
@@ -185,7 +187,13 @@ mod tests {
             }
         }
         columns.insert("winch.tension".to_owned(), times.clone());
-        Record { title: "a </script> b".to_owned(), times, columns, scene: Scene { waterline: Some(-1.0), ..Scene::default() }, failure: None }
+        Record {
+            title: "a </script> b".to_owned(),
+            times,
+            columns,
+            scene: Scene { waterline: Some(-1.0), ..Scene::default() },
+            failure: None,
+        }
     }
 
     #[test]
@@ -221,5 +229,24 @@ mod tests {
         assert_eq!(page.matches("</script>").count(), page.matches("<script").count(), "a name cannot end a script");
         assert!(!page.contains("{script}") && !page.contains("{frames}"));
         assert!(html(&record(10, 1)).is_none());
+    }
+
+    /// With F = diag(1, -1, -1), the page's pose is F R F of the FMU's R.
+    #[test]
+    fn exact_z_down_is_drawn_upwards() {
+        let mut record = record(2, 2);
+        record.scene.ned = true;
+        for (name, value) in POSE.into_iter().zip([3.0, 2.0, 1.0, 0.3, -0.2, 0.5]) {
+            record.columns.insert(name.to_owned(), vec![value; 2]);
+        }
+        let list = sources(&record, &[0, 1], None);
+        let shown = |name: &str| list.iter().find(|source| source.name == name).map(|source| source.sign * source.values[0]).unwrap();
+        assert_eq!(["ship.x", "ship.y", "ship.z"].map(shown), [3.0, -2.0, -1.0]);
+        let turned = nalgebra::Rotation3::from_euler_angles(shown("ship.roll"), shown("ship.pitch"), shown("ship.yaw"));
+        let flip = nalgebra::Matrix3::from_diagonal(&nalgebra::Vector3::new(1.0, -1.0, -1.0));
+        let fmu = nalgebra::Rotation3::from_euler_angles(0.3, -0.2, 0.5);
+        // A few roundings of numbers up to 1.
+        assert!((turned.matrix() - flip * fmu.matrix() * flip).amax() < 1e-15);
+        assert_eq!(shown("p0.z"), -record.columns["cable.point[1].z"][0]);
     }
 }

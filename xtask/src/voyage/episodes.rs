@@ -31,7 +31,9 @@ pub fn episodes(times: &[f64], holds: impl Fn(usize) -> bool) -> Vec<Episode> {
 
 /// What befell the cable, by name: `(what, episodes)`, also where there was none.
 pub fn all(record: &Record) -> Vec<(String, Vec<Episode>)> {
-    let of = |name: &str, value: bool| Some(episodes(&record.times, |row| (record.columns[name][row] != 0.0) == value)).filter(|_| record.has(name));
+    let of = |name: &str, value: bool| {
+        Some(episodes(&record.times, |row| (record.columns[name][row] != 0.0) == value)).filter(|_| record.has(name))
+    };
     let mut list = Vec::new();
     let mut add = |what: String, name: &str, value: bool| {
         if record.has(name) {

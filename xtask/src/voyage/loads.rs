@@ -9,6 +9,8 @@ use crate::plots::{Chart, PALETTE, Panel, Series};
 
 /// Episodes of a kind that are listed one by one.
 const LISTED: usize = 30;
+/// What stays below it, in SI units, is zero but for rounding.
+const NOTHING: f64 = 1e-9;
 
 /// The page.
 pub fn html(record: &Record, animated: bool) -> String {
@@ -60,7 +62,8 @@ fn least(values: &[f64]) -> Option<(usize, f64)> {
 }
 
 fn greatest(values: &[f64]) -> Option<(usize, f64)> {
-    values.iter().copied().enumerate().filter(|(_, v)| v.is_finite()).max_by(|a, b| a.1.total_cmp(&b.1))
+    // Of equal ones the first: `max_by` alone would give the last.
+    values.iter().copied().enumerate().filter(|(_, v)| v.is_finite()).rev().max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 fn tiles(record: &Record) -> Vec<(String, &'static str)> {
@@ -131,7 +134,15 @@ fn margins(page: &mut Page, record: &Record) {
             let share = mean.filter(|mean| *mean > 0.0).map_or_else(String::new, |mean| format!("{:.0} %", 100.0 * load / mean));
             let time = number(record.times[row]);
             let tension = tension.map_or_else(String::new, |tension| with_unit(tension, &FORCE));
-            Some(vec![sheave.name.clone(), with_unit(load, &LINE_LOAD), share, time, degrees("contact_begin"), degrees("contact_end"), tension])
+            Some(vec![
+                sheave.name.clone(),
+                with_unit(load, &LINE_LOAD),
+                share,
+                time,
+                degrees("contact_begin"),
+                degrees("contact_end"),
+                tension,
+            ])
         })
         .collect();
     if rows.is_empty() {
@@ -164,15 +175,19 @@ fn figures(page: &mut Page, record: &Record) {
     let (inside, ends): (Vec<_>, Vec<_>) = tensions.into_iter().partition(|name| name.starts_with("sheave[") || name.starts_with("cable."));
     let (sheaves, cable): (Vec<_>, Vec<_>) = inside.into_iter().partition(|name| name.starts_with("sheave["));
     let each = |what: &str| (1..=record.scene.sheaves.len()).map(|i| format!("sheave[{i}].{what}")).collect::<Vec<_>>();
-    let charts = [
-        ("Tensions", "Tension", [(&ends, &FORCE), (&sheaves, &FORCE), (&cable, &FORCE)], "Effective tensions at the cable's ends, at the sheaves, and their least and greatest along the cable."),
-    ];
+    let charts = [(
+        "Tensions",
+        "Tension",
+        [(&ends, &FORCE), (&sheaves, &FORCE), (&cable, &FORCE)],
+        "Effective tensions at the cable's ends, at the sheaves, and their least and greatest along the cable.",
+    )];
     let mut list: Vec<(Chart, &str)> = Vec::new();
     for (title, quantity, groups, caption) in charts {
         let panels: Vec<_> = groups.iter().filter_map(|(names, unit)| panel(record, quantity, unit, names)).collect();
         list.push((Chart::new(title, "Time, s", panels), caption));
     }
-    let flanks: Vec<_> = (1..=record.scene.sheaves.len()).flat_map(|i| [1, 2].map(|side| format!("sheave[{i}].flank_force[{side}]"))).collect();
+    let flanks: Vec<_> =
+        (1..=record.scene.sheaves.len()).flat_map(|i| [1, 2].map(|side| format!("sheave[{i}].flank_force[{side}]"))).collect();
     let panels = [
         panel(record, "Resultant", &FORCE, &each("normal_force")),
         panel(record, "On the flanks", &FORCE, &flanks),
@@ -180,7 +195,10 @@ fn figures(page: &mut Page, record: &Record) {
         panel(record, "Contact arc", &ANGLE, &each("wrap_angle")).map(|panel| panel.height(130.0)),
     ];
     let panels: Vec<_> = panels.into_iter().flatten().collect();
-    list.push((Chart::new("Sheaves", "Time, s", panels), "What the cable does to the sheaves; a line load of nothing is a cable that lifts off."));
+    list.push((
+        Chart::new("Sheaves", "Time, s", panels),
+        "What the cable does to the sheaves; a line load of nothing is a cable that lifts off.",
+    ));
     page.heading("Over time");
     for (chart, caption) in list.iter().filter(|(chart, _)| !chart.panels.is_empty()) {
         page.figure(&chart.svg(), caption);
@@ -209,7 +227,7 @@ fn extremes(page: &mut Page, record: &Record) {
         .filter_map(|(name, unit)| {
             let values = record.column(name)?;
             let ((low, least), (high, greatest)) = (least(values)?, greatest(values)?);
-            if least == 0.0 && greatest == 0.0 {
+            if least.abs().max(greatest.abs()) < NOTHING {
                 return None;
             }
             let (symbol, factor) = unit.fitting(values.iter().copied());
@@ -219,7 +237,8 @@ fn extremes(page: &mut Page, record: &Record) {
             Some(vec![name.clone(), write(least), low, write(mean), write(greatest), high, symbol.to_owned()])
         })
         .collect();
-    page.heading("Extremes").paragraph("Least and greatest value at the communication points, and when each came first; what is zero throughout is left out.");
+    page.heading("Extremes")
+        .paragraph("Least and greatest value at the communication points, and when each came first; what is zero throughout (below 1e-9 in SI units) is left out.");
     page.wide_table(&["What", "Least", "at, s", "Mean", "Greatest", "at, s", "Unit"], &rows);
 }
 

@@ -110,7 +110,8 @@ mod tests {
     #[test]
     fn exact_the_standard_s_example() {
         let found: Vec<_> = cycles(&STANDARD).iter().map(|c| (c.range, c.mean, c.count)).collect();
-        let wanted = [(3.0, -0.5, 0.5), (4.0, -1.0, 0.5), (4.0, 1.0, 1.0), (8.0, 1.0, 0.5), (9.0, 0.5, 0.5), (8.0, 0.0, 0.5), (6.0, 1.0, 0.5)];
+        let wanted =
+            [(3.0, -0.5, 0.5), (4.0, -1.0, 0.5), (4.0, 1.0, 1.0), (8.0, 1.0, 0.5), (9.0, 0.5, 0.5), (8.0, 0.0, 0.5), (6.0, 1.0, 0.5)];
         assert_eq!(found, wanted);
         let per_range = |range: f64| cycles(&STANDARD).iter().filter(|c| c.range == range).map(|c| c.count).sum::<f64>();
         assert_eq!([3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0].map(per_range), [0.5, 1.5, 0.0, 0.5, 0.0, 1.0, 0.5, 0.0]);
@@ -118,7 +119,8 @@ mod tests {
 
     #[test]
     fn exact_points_between_reversals_change_nothing() {
-        let fine: Vec<f64> = STANDARD.windows(2).flat_map(|p| (0..4).map(move |k| p[0] + 0.25 * f64::from(k) * (p[1] - p[0]))).chain([-2.0]).collect();
+        let fine: Vec<f64> =
+            STANDARD.windows(2).flat_map(|p| (0..4).map(move |k| p[0] + 0.25 * f64::from(k) * (p[1] - p[0]))).chain([-2.0]).collect();
         let plateaus: Vec<f64> = STANDARD.iter().flat_map(|&x| [x, x]).collect();
         assert_eq!(cycles(&fine), cycles(&STANDARD));
         assert_eq!(cycles(&plateaus), cycles(&STANDARD));
