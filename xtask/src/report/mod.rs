@@ -6,6 +6,7 @@ mod bench;
 mod dynamics;
 mod edge;
 mod flume;
+mod hard;
 mod identification;
 mod inputs;
 mod moving_pulley;
@@ -70,9 +71,10 @@ const SECTIONS: [(&str, Make); 12] = [
 /// # Errors
 /// A build that fails, a folder that cannot be written, a bound that is missed.
 pub fn run(args: Args) -> Result<()> {
-    let chosen: Vec<_> = SECTIONS.iter().filter(|(name, _)| args.only.as_ref().is_none_or(|only| name.contains(only.as_str()))).collect();
+    let all: Vec<_> = SECTIONS.iter().chain(&hard::GROUPS).collect();
+    let chosen: Vec<_> = all.iter().filter(|(name, _)| args.only.as_ref().is_none_or(|only| name.contains(only.as_str()))).collect();
     if chosen.is_empty() {
-        let names: Vec<_> = SECTIONS.iter().map(|(name, _)| *name).collect();
+        let names: Vec<_> = all.iter().map(|(name, _)| *name).collect();
         return Err(Failure(format!("--only {}: no such section; there are {}", args.only.unwrap_or_default(), names.join(", "))));
     }
     let clock = Instant::now();

@@ -95,6 +95,8 @@ fn body(page: &mut Page, sections: &[Section]) {
                 Block::Text(text) => page.paragraph(text),
                 Block::Table(header, rows) => page.wide_table(&header.iter().map(String::as_str).collect::<Vec<_>>(), rows),
                 Block::Rows(rows) => page.figure_table(&HEADER, &figures(rows)),
+                Block::Cases(header, rows) => page.figure_table(&header.iter().map(String::as_str).collect::<Vec<_>>(), rows),
+                Block::Counted(_) => page,
                 Block::Chart(file, chart, caption) => page.image(&format!("{file}.svg"), &chart.title, caption),
                 Block::Csv(file, _, what) => page.file(&format!("{file}.csv"), what),
             };
