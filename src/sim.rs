@@ -4,6 +4,7 @@ mod compensation;
 mod direction;
 mod drives;
 mod rates;
+mod reel;
 mod sensitivity;
 
 use crate::equilibrium;
@@ -480,6 +481,9 @@ impl Simulation {
             self.system.reach(to, &mut s.u, &mut s.w, &mut s.a);
             s.time = to;
             s.counts[0] += 1;
+            if reel::is_wound_up(&self.system, to, &s.u) {
+                return Err(reel::message(to));
+            }
             if taken >= solver.steps_max && s.time < end {
                 let node = self.worst_node();
                 return Err(self.failure(end, node, "solver.steps_max sub-steps were not enough"));
