@@ -3,7 +3,7 @@
 
 mod bench;
 
-use bench::{ANCHOR, HEAVY_WIRE, Wire, channel, heaving, still};
+use bench::{ANCHOR, G, HEAVY_WIRE, Wire, channel, heaving, still};
 use fairlead::outputs::Outputs;
 use fairlead::scene::Scene;
 use fairlead::scene::file::SceneFile;
@@ -130,4 +130,27 @@ fn exact_reeling_in_stops_before_the_body_is_on_the_drum() {
     let held = |_| Inputs { winch: Channel { value: -0.55, first: Some(0.0), second: None }, ..Inputs::default() };
     let mut sim = started(&winch(length, 16), &held(0.0));
     ride("reeled in to 0.55 m", &mut sim, 0.02, 3.0, held).expect("completes");
+}
+
+#[test]
+fn exact_a_floating_rope_starts_on_the_surface() {
+    let rope = Wire { length: 30.0, diameter: 0.02, mass_per_length: 0.2, ea: 1e5, ei: 0.5, laws: "damping.axial = 300" };
+    let density = 1025.0;
+    let sunk = rope.mass_per_length / (density * PI / 4.0 * rope.diameter.powi(2));
+    for (vx, vy) in [(0.5, 0.0), (0.3, -0.4)] {
+        let current = format!("current.profile = [[0, {vx:?}, {vy:?}]]\n");
+        let rest = format!(
+            "[fluid]\ndensity = {density:?}\nwaterline = 0\ndrag = {{ law = \"cross_flow\", cd_normal = 1.2, cd_tangential = 0.01 }}\n{current}\
+             [anchor]\nposition = [0, 0, 2]\n[outputs]\npoints = 11\n"
+        );
+        let scene = rope.scene_at(G, 60, &rest, None);
+        let mut sim = started(&scene, &Inputs::default());
+        let end = sim.outputs().cable.points[10];
+        println!("end at {end:?}, {sunk:.4} of the rope under water");
+        // Weight equals buoyancy where the surface cuts the rope's height at its sunk share; rounding of the equilibrium.
+        assert!((0.5 - end.z / rope.diameter - sunk).abs() < 1e-6, "{end}");
+        // Nearly all of the rope is beyond the two metres down to the water, with the current.
+        assert!((end.x * vx + end.y * vy) / 0.5 > 28.0, "{end}");
+        ride("floating rope", &mut sim, 0.1, 2.0, still).expect("completes");
+    }
 }
