@@ -43,7 +43,7 @@ pub use speed::{Args as BenchArgs, bench as run_bench};
 /// Write fmu-tests/report from runs of packed FMUs: closed forms, the thesis's experiments, other programs' references
 #[derive(clap::Args)]
 pub struct Args {
-    /// Only the sections whose name contains this; prints the verdicts and writes nothing
+    /// Only the sections whose name contains this; prints the verdicts and writes nothing, but for `hard`, which writes the hard cases' page
     #[arg(long, value_name = "NAME")]
     only: Option<String>,
 }
@@ -102,9 +102,16 @@ pub fn run(args: Args) -> Result<()> {
     }
     print!("{}", page::verdicts(&sections));
     println!("{} FMUs packed, {:.0} s", bench.count(), clock.elapsed().as_secs_f64());
+    let folder = root().join("fmu-tests").join("report");
+    let first_hard = chosen.iter().position(|(name, _)| name.starts_with(hard::PREFIX)).unwrap_or(chosen.len());
     if args.only.is_none() {
-        let folder = root().join("fmu-tests").join("report");
-        page::write(&sections, &folder)?;
+        page::write(&sections[..first_hard], &folder)?;
+        println!("{}", crate::results::shown(&folder.join("index.html")));
+    }
+    // A page of its own, written when it is whole: its cases take as long as all the rest.
+    if chosen.len() - first_hard == hard::GROUPS.len() {
+        let folder = folder.join("hard");
+        page::write_hard(&sections[first_hard..], &folder)?;
         println!("{}", crate::results::shown(&folder.join("index.html")));
     }
     let missed: usize = sections.iter().map(Section::missed).sum();

@@ -18,6 +18,8 @@ pub enum Block {
     Counted(Vec<Row>),
     /// A chart in a file of this name (without ending), with its caption.
     Chart(String, Box<Chart>, String),
+    /// Small charts side by side: file (without ending) and chart.
+    Gallery(Vec<(String, Chart)>),
     /// A file of numbers: name, text, what it holds.
     Csv(String, String, String),
 }
@@ -72,6 +74,12 @@ impl Section {
         self
     }
 
+    /// With small charts side by side.
+    pub fn gallery(mut self, charts: Vec<(String, Chart)>) -> Self {
+        self.blocks.push(Block::Gallery(charts));
+        self
+    }
+
     /// With a file of numbers.
     pub fn csv(mut self, file: &str, header: &str, columns: &[&[f64]], what: &str) -> Self {
         self.blocks.push(Block::Csv(file.to_owned(), csv(header, columns), what.to_owned()));
@@ -80,7 +88,10 @@ impl Section {
 
     /// All figures.
     pub fn figures(&self) -> impl Iterator<Item = &Row> {
-        self.blocks.iter().filter_map(|block| if let Block::Rows(rows) | Block::Counted(rows) = block { Some(rows) } else { None }).flatten()
+        self.blocks
+            .iter()
+            .filter_map(|block| if let Block::Rows(rows) | Block::Counted(rows) = block { Some(rows) } else { None })
+            .flatten()
     }
 
     /// How many figures missed their bound.

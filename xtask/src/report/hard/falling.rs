@@ -11,22 +11,27 @@ use std::f64::consts::PI;
 fn whip() -> Result<Case> {
     let wire = Wire { laws: "compression = \"linear\"\ndamping.axial = 0.02", ..NYLON };
     let rest = "[anchor]\nposition = [0, 0, 0]\n[body]\nmass = 1.33e-3\n[initial]\nstate = \"straight\"\ndirection = [1, 0, 0]\n[solver]\ntolerance = 1e-4\n";
-    Ok(Case::new("P3 beyond 1.15 s: the string whips", wire.scene(G, 80, 161, rest)?, Times::Equal(1e-3, 2.0), ("anchor.tension", "Tension at the pin, mN", 1e3))
-        .happens(
-            "A string of 1 m with a sphere swings down from level, passes the lowest point, goes slack on the far side after 1.15 s and whips.",
-            "their tensions are not comparable after 1.15 s, their positions are until 2 s.",
-        )
-        .record(&["body.x", "body.z"])
-        .asks(Quantity::new("sphere's x at 1.5 s", "m", Amount(2e-3), |run| run.value("body.x", 1.5)))
-        .asks(Quantity::new("sphere's z at 1.5 s", "m", Amount(2e-3), |run| run.value("body.z", 1.5)))
-        .asks(Quantity::new("sphere's x at 2 s", "m", Amount(1e-2), |run| run.value("body.x", 2.0)))
-        .asks(Quantity::new("sphere's z at 2 s", "m", Amount(1e-2), |run| run.value("body.z", 2.0)))
-        .balanced(2e-2))
+    Ok(Case::new(
+        "P3 beyond 1.15 s: the string whips",
+        wire.scene(G, 40, 81, rest)?,
+        Times::Equal(1e-3, 2.0),
+        ("anchor.tension", "Tension at the pin, mN", 1e3),
+    )
+    .happens(
+        "A string of 1 m with a sphere swings down from level, passes the lowest point, goes slack on the far side after 1.15 s and whips.",
+        "their tensions are not comparable after 1.15 s, their positions are until 2 s.",
+    )
+    .record(&["body.x", "body.z"])
+    .asks(Quantity::new("sphere's x at 1.5 s", "m", Amount(2e-3), |run| run.value("body.x", 1.5)))
+    .asks(Quantity::new("sphere's z at 1.5 s", "m", Amount(2e-3), |run| run.value("body.z", 1.5)))
+    .asks(Quantity::new("sphere's x at 2 s", "m", Amount(1e-2), |run| run.value("body.x", 2.0)))
+    .asks(Quantity::new("sphere's z at 2 s", "m", Amount(1e-2), |run| run.value("body.z", 2.0)))
+    .balanced(2e-2))
 }
 
 const LENGTH: f64 = 1.0;
 /// Of the fold.
-const FOLD: f64 = 0.005;
+const FOLD: f64 = 0.01;
 
 /// Time in which the tip of a chain folded without width falls by `x`: ∫ dx/v, v² = g x (2L − x)/(L − x). With x = u² the integrand is smooth.
 fn fall_time(x: f64) -> f64 {
@@ -53,19 +58,19 @@ fn chain() -> Result<Case> {
             }
         })
         .collect();
-    let scene = wire.scene(G, 200, 401, "[anchor]\nposition = [0, 0, 0]\n[solver]\ntolerance = 1e-4\n")?.start_shape(&shape);
+    let scene = wire.scene(G, 200, 401, "[anchor]\nposition = [0, 0, 0]\n[solver]\ntolerance = 3e-4\n")?.start_shape(&shape);
     let tip = "cable.point[401].z";
     let passes = move |x: f64| move |run: &super::run::Run| run.first_crossing(tip, -x, false);
-    let source = "closed form of the chain folded without width (Calkin & March 1989, Tomaszewski et al. 2006); the fold is 1 % of the length wide";
+    let source =
+        "closed form of the chain folded without width (Calkin & March 1989, Tomaszewski et al. 2006); the fold is 2 % of the length wide";
     Ok(Case::new("Folded chain: its tip outruns gravity", scene, Times::Equal(5e-4, 0.45), (tip, "Tip's z, m", 1.0))
         .happens(
             "A chain of 1 m hangs folded, both ends at the same height; one is let go. The fold keeps the tension at the tip's side, so that the tip falls faster than g and cracks like a whip at the bottom.",
             "",
         )
         .record(&["anchor.tension"])
-        .asks(Quantity::new("tip has fallen 0.5 m", "s", Share(2e-3), passes(0.5)).against(fall_time(0.5), 1e-2, source))
-        .asks(Quantity::new("tip has fallen 0.9 m (a free body: 0.4283 s)", "s", Share(2e-3), passes(0.9)).against(fall_time(0.9), 1e-2, source))
-        .asks(Quantity::new("tension at the anchor when it has fallen 0.8 m", "N", Share(5e-2), move |run| run.value("anchor.tension", run.first_crossing(tip, -0.8, false))))
+        .asks(Quantity::new("tip has fallen 0.5 m", "s", Share(5e-3), passes(0.5)).against(fall_time(0.5), 2e-2, source))
+        .asks(Quantity::new("tip has fallen 0.9 m (a free body: 0.4283 s)", "s", Share(5e-3), passes(0.9)).against(fall_time(0.9), 2e-2, source))
         .balanced(2e-2))
 }
 
@@ -75,5 +80,9 @@ fn chain() -> Result<Case> {
 /// Scenes that are no TOML.
 pub fn section(bench: &Bench) -> Result<Section> {
     let found = examine_all(bench, vec![whip()?, chain()?]);
-    Ok(table("Falling and whipping", "Motions whose speed and curvature grow without bound in the limit of a perfectly flexible chain.", found))
+    Ok(table(
+        "Falling and whipping",
+        "Motions whose speed and curvature grow without bound in the limit of a perfectly flexible chain.",
+        found,
+    ))
 }

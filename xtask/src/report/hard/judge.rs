@@ -3,7 +3,7 @@
 use super::case::{Case, Claim, Ends, Measure, Quantity};
 use super::run::{Run, run};
 use crate::error::Result;
-use crate::plots::{Chart, PALETTE, Panel, Series, SOFT};
+use crate::plots::{Chart, PALETTE, Panel, SOFT, Series};
 use crate::report::bench::{Bench, side_by_side};
 use crate::report::numerics::{pairs, relative_rms};
 use crate::report::row::{Row, Truth, Verdict, figure, share};
@@ -116,7 +116,11 @@ impl Findings {
             None => Row::error(Truth::Own, format!("{name}: ends as documented"), 0.0, "").within(0.0).because(wanted),
             Some((label, run)) => {
                 let message = run.stopped.as_ref().map_or(String::new(), |(_, m)| format!(": {m}"));
-                Row::failed(Truth::Own, format!("{name}: ends as documented"), format!("expected: {wanted}; {label} it {}{message}", run.end()))
+                Row::failed(
+                    Truth::Own,
+                    format!("{name}: ends as documented"),
+                    format!("expected: {wanted}; {label} it {}{message}", run.end()),
+                )
             }
         }];
         if self.shipped.stopped.is_none() {
@@ -127,11 +131,9 @@ impl Findings {
             );
         }
         if let Some((found, bound)) = self.shipped.momentum.zip(self.case.momentum) {
-            rows.push(
-                Row::error(Truth::Exact, format!("{name}: momentum defect"), found, "")
-                    .within(bound)
-                    .because("forces on the supports and weight, integrated over the communication points, against the momentum of points and body"),
-            );
+            rows.push(Row::error(Truth::Exact, format!("{name}: momentum defect"), found, "").within(bound).because(
+                "forces on the supports and weight, integrated over the communication points, against the momentum of points and body",
+            ));
         }
         for q in &self.case.quantities {
             for (label, run) in self.refinements() {
@@ -146,40 +148,51 @@ impl Findings {
             if let Some((truth, within, source)) = q.truth {
                 let kind = if source.contains("closed form") { Truth::Exact } else { Truth::Cross };
                 rows.push(
-                    Row::relative(kind, format!("{name}: {}", q.what), q.value(&self.shipped), truth, q.unit).within(within).because(source),
+                    Row::relative(kind, format!("{name}: {}", q.what), q.value(&self.shipped), truth, q.unit)
+                        .within(within)
+                        .because(source),
                 );
             }
         }
         rows
     }
 
-    /// Lines of the table: one a figure.
+    /// Lines of the table: one a figure, the first of them with what is said of the case as a whole.
     fn lines(&self, rows: &[Row]) -> Vec<Vec<String>> {
-        let worst = if rows.iter().any(|r| r.verdict() == Verdict::Missed) { "MISSED" } else { "holds" };
-        let [steps, rejected, solves] = self.shipped.counts;
+        let run = &self.shipped;
+        let [steps, rejected, solves] = run.counts;
         let peers = if self.case.peers.is_empty() { String::new() } else { format!(" Others: {}", self.case.peers) };
-        let energy = if self.shipped.stopped.is_some() { String::new() } else { format!("{:.1e}", self.shipped.energy_error) };
+        let energy = if run.stopped.is_some() { String::new() } else { format!("{:.1e}", run.energy_error) };
+        let momentum = run.momentum.map_or(String::new(), |m| format!("\n{m:.1e}"));
         let mut facts = vec![
             format!("{}\n{}{peers}", self.case.name, self.case.happens),
-            self.shipped.end(),
-            energy,
-            self.shipped.momentum.map_or(String::new(), |m| format!("{m:.1e}")),
-            format!("{steps} ({rejected})"),
-            format!("{solves}"),
+            run.end() + &run.stopped.as_ref().map_or(String::new(), |(_, m)| format!("\n{}", brief(m))),
+            format!("{energy}{momentum}"),
+            format!("{steps} ({rejected})\n{solves}"),
         ];
+        let figures: Vec<String> = self.case.quantities.iter().map(|q| format!("{}: {}", self.case.name, q.what)).collect();
+        let verdict = |mine: &dyn Fn(&Row) -> bool| {
+            let missed = rows.iter().any(|r| mine(r) && r.verdict() == Verdict::Missed);
+            if missed { "MISSED" } else { "holds" }.to_owned()
+        };
+        let whole = |row: &Row| !figures.iter().any(|f| row.what.starts_with(f.as_str()));
         let mut lines = Vec::new();
-        for q in &self.case.quantities {
-            let value = q.value(&self.shipped);
+        for (q, figure_name) in self.case.quantities.iter().zip(&figures) {
+            let value = q.value(run);
             let other = |run: &Option<Run>| run.as_ref().map_or(String::new(), |run| q.off(q.change(&self.shipped, run).0));
-            let claim = match q.claim {
-                Claim::Share(c) | Claim::Amount(c) => q.off(c),
-            };
+            let (Claim::Share(claim) | Claim::Amount(claim)) = q.claim;
             let text = if value.is_nan() { String::new() } else { format!("{} {}", figure(value), q.unit) };
-            facts.extend([q.what.to_owned(), text.trim().to_owned(), claim, other(&self.tighter), other(&self.finer), worst.into()]);
-            lines.push(std::mem::replace(&mut facts, vec![String::new(); 6]));
+            let first = lines.is_empty();
+            facts.extend([
+                q.what.to_owned(),
+                format!("{}\n\u{b1} {}", text.trim(), q.off(claim)),
+                format!("{}\n{}", other(&self.tighter), other(&self.finer)),
+                verdict(&|row| row.what.starts_with(figure_name.as_str()) || first && whole(row)),
+            ]);
+            lines.push(std::mem::replace(&mut facts, vec![String::new(); 4]));
         }
         if lines.is_empty() {
-            facts.extend([String::new(), String::new(), String::new(), String::new(), String::new(), worst.into()]);
+            facts.extend([String::new(), String::new(), String::new(), verdict(&|_| true)]);
             lines.push(facts);
         }
         lines
@@ -210,7 +223,7 @@ impl Findings {
     }
 
     /// The signal of the shipped run and, thin, of the finer mesh.
-    fn chart(&self) -> (String, Chart, String) {
+    fn chart(&self) -> (String, Chart) {
         let (name, label, factor) = self.case.draw;
         let series = |label: &str, run: &Run, colour| {
             let y: Vec<f64> = run.of(name).iter().map(|v| v * factor).collect();
@@ -219,8 +232,8 @@ impl Findings {
         };
         let mut lines = vec![series("as shipped", &self.shipped, PALETTE[0])];
         lines.extend(self.finer.iter().map(|run| series("twice the elements", run, SOFT).dashed().width(1.1)));
-        let chart = Chart { width: 620.0, ..Chart::new(&self.case.name, "Time, s", vec![Panel::new(label, lines).height(150.0)]) };
-        (slug(&self.case.name), chart, String::new())
+        let chart = Chart::new(&self.case.name, "Time, s", vec![Panel::new(label, lines).height(150.0)]);
+        (slug(&self.case.name), Chart { width: 520.0, ..chart })
     }
 }
 
@@ -251,10 +264,21 @@ fn slug(name: &str) -> String {
     plain.split_whitespace().collect::<Vec<_>>().join("-")
 }
 
-const HEADER: [&str; 12] = [
-    "Case", "Ends", "Energy error", "Momentum defect", "Sub-steps (rejected)", "Solves", "Figure", "Value", "Error claimed",
-    "Half the tolerance moves it by", "Twice the elements move it by", "Verdict",
+const HEADER: [&str; 8] = [
+    "Case, what happens",
+    "Ends",
+    "Energy error, momentum defect",
+    "Sub-steps (rejected), solves",
+    "Figure",
+    "Value, error claimed",
+    "Moved by half the tolerance, by twice the elements",
+    "Verdict",
 ];
+
+/// The message of a refused step up to its advice.
+fn brief(message: &str) -> &str {
+    message.split(" Try: ").next().unwrap_or(message)
+}
 
 /// A section: its table, then a small chart a case.
 pub fn section(title: &str, text: &str, found: Vec<std::result::Result<Findings, Row>>) -> Section {
@@ -276,9 +300,5 @@ pub fn section(title: &str, text: &str, found: Vec<std::result::Result<Findings,
             }
         }
     }
-    let mut section = Section::new(title).text(text).case_table(&HEADER, lines).counted(rows);
-    for (file, chart, caption) in charts {
-        section = section.chart(&file, chart, caption);
-    }
-    section
+    Section::new(title).text(text).case_table(&HEADER, lines).counted(rows).gallery(charts)
 }

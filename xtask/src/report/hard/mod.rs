@@ -19,6 +19,9 @@ use crate::error::Result;
 /// What makes a section.
 type Make = fn(&Bench) -> Result<Section>;
 
+/// What the groups' names begin with.
+pub const PREFIX: &str = "hard-";
+
 /// The groups: name for `--only`, and what makes them.
 pub const GROUPS: [(&str, Make); 7] = [
     ("hard-snap", snap::section),

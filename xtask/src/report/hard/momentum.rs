@@ -67,7 +67,13 @@ impl Momentum {
         let (mut moment, mut force) = ([0.0; 3], [0.0, 0.0, -self.weight]);
         let last = self.points.len() - 1;
         for (k, point) in self.points.iter().enumerate() {
-            let share = if k == 0 || k == last { 1.0 } else if k % 2 == 1 { 4.0 } else { 2.0 };
+            let share = if k == 0 || k == last {
+                1.0
+            } else if k % 2 == 1 {
+                4.0
+            } else {
+                2.0
+            };
             let place = read(point)?;
             (0..3).for_each(|c| moment[c] += self.line_mass * self.spacing * share / 3.0 * place[c]);
         }
