@@ -3,7 +3,9 @@
 mod compensation;
 mod direction;
 mod drives;
+mod laid;
 mod rates;
+mod reel;
 mod sensitivity;
 
 use crate::equilibrium;
@@ -198,7 +200,7 @@ impl Simulation {
         let weight = (mass * scene.gravity).max(1e-9 * scene.cable.ea);
         match &scene.initial {
             Initial::Equilibrium => {
-                let down = Vector3::new(0.0, 0.0, if net_weight(scene) >= 0.0 { -1.0 } else { 1.0 });
+                let down = laid::direction(scene, system, time);
                 let mut start = match system.far_end {
                     Some(_) => equilibrium::lay_between(system, time, &down),
                     None => equilibrium::lay_out(system, time, &down),
@@ -480,6 +482,9 @@ impl Simulation {
             self.system.reach(to, &mut s.u, &mut s.w, &mut s.a);
             s.time = to;
             s.counts[0] += 1;
+            if reel::is_wound_up(&self.system, to, &s.u) {
+                return Err(reel::message(to));
+            }
             if taken >= solver.steps_max && s.time < end {
                 let node = self.worst_node();
                 return Err(self.failure(end, node, "solver.steps_max sub-steps were not enough"));
@@ -642,12 +647,4 @@ impl State {
         (self.time, self.step, self.last, self.tension, self.first_angle) = (o.time, o.step, o.last, o.tension, o.first_angle);
         (self.counts, self.ledger, self.base) = (o.counts, o.ledger, o.base);
     }
-}
-
-/// Weight less buoyancy of cable and body when all is under water, N.
-fn net_weight(scene: &Scene) -> f64 {
-    let (cable, body) = (&scene.cable, scene.body.as_ref());
-    let mass = cable.mass_per_length * cable.length + body.map_or(0.0, |b| b.mass) + scene.load.map_or(0.0, |l| l.mass);
-    let volume = std::f64::consts::PI * cable.diameter.powi(2) / 4.0 * cable.length + body.map_or(0.0, |b| b.volume);
-    mass - scene.fluid.as_ref().map_or(0.0, |f| f.density * volume)
 }

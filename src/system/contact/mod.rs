@@ -65,6 +65,11 @@ impl SurfaceFrame {
         Self { rotation, base, base_velocity, turn, frozen }
     }
 
+    /// A point relative to the first node, world axes, in the surface's axes.
+    pub fn place(&self, point: &Vec3<f64>) -> Vec3<f64> {
+        axpy(&mat_vec(&self.rotation, point), 1.0, &self.base)
+    }
+
     /// An element's shape from its slots (relative to the first node, world axes).
     #[inline(always)]
     pub fn shape(&self, u: &[Vec3<f64>; 4], l: f64) -> ([Vec3<f64>; 4], Cubic) {
