@@ -66,12 +66,13 @@ def test_exact_the_picture_is_not_blank(pages, tmp_path):
     picture = tmp_path / "picture.png"
     browse((pages / "animation.html").as_uri(), tmp_path, f"--screenshot={picture}")
     width, height, rows = pixels(picture.read_bytes())
-    # The left pane, without its label: cable and winch are dark, the sea is pale blue, the body orange.
-    pane = [rows[y][x] for y in range(80, 330) for x in range(30, width // 2 - 10)]
+    # The left pane between its label and its ruler: cable and winch are dark, the sea is pale blue. The body at the lower end is orange.
+    across = range(30, width // 2 - 10)
+    pane = [rows[y][x] for y in range(80, 320) for x in across]
     dark = sum(max(p) < 90 for p in pane)
     sea = sum(p[2] > p[0] + 8 and min(p) > 180 for p in pane)
-    body = sum(p[0] > p[2] + 100 for p in pane)
-    # Broken, each is zero. A cable across the pane is some hundred pixels long, the sea a good part of the pane, the body's dot 10 px wide.
+    body = sum(p[0] > p[2] + 100 for y in range(320, 362) for p in [rows[y][x] for x in across])
+    # Not drawn, each is zero. The cable is some hundred pixels long, the sea a good part of the pane, the body's dot 10 px wide.
     assert dark > 100 and sea > 0.05 * len(pane) and body > 30, (dark, sea, body)
 
 

@@ -16,7 +16,7 @@ pub struct Findings {
     pub case: Case,
     /// As shipped.
     pub shipped: Run,
-    /// With half the tolerance; `None` where the shipped run has not ended as it must.
+    /// With half the tolerance.
     pub tighter: Option<Run>,
     /// With twice the elements.
     pub finer: Option<Run>,
