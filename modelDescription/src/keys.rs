@@ -387,7 +387,7 @@ pub static KEYS: &[Key] = &[
     key(1161, "initial.direction", Vector(&u::DIRECTION), Required, "Direction of the cable down the free rope, inertial frame; any length but zero").when(Is("state", &["released", "straight"])),
     key(1162, "initial.file", Text, Required, "CSV with columns s, x, y, z and optionally tx, ty, tz and vx, vy, vz; path relative to the scene file").when(Is("state", &["shape"])),
 
-    key(1170, "solver.method", Choice(&["rodas4", "tr_bdf2", "esdirk3", "esdirk4"]), text("rodas4"), "Time integrator: rodas4 (Rosenbrock, a new tangent every sub-step), or implicit with kept factors: tr_bdf2 (order 2, cheap at 1 %), esdirk3, esdirk4"),
+    key(1170, "solver.method", Choice(&["rodas4", "tr_bdf2", "esdirk3", "esdirk4", "radau5"]), text("rodas4"), "Time integrator: rodas4 (Rosenbrock, a new tangent every sub-step), or implicit with kept factors: tr_bdf2 (order 2, cheap at 1 %), esdirk3, esdirk4; or radau5 (order 5, slow, an independent reference)"),
     key(1171, "solver.tolerance", Real(&u::RATIO, Inside(0.0, 1.0)), real(1e-3), "Relative accuracy asked of the tension").tunable(),
     key(1172, "solver.step_max", Real(&u::DURATION, Positive), real(0.1), "Greatest sub-step"),
     key(1173, "solver.step_min", Real(&u::DURATION, Positive), real(1e-9), "Smallest sub-step, below which a step has failed"),

@@ -123,29 +123,6 @@ impl Esdirk {
             add(a, 1.0, &self.change);
             // The energy norm of the change of (u, w), so that axial waves and stiff contact count by what they pull.
             let size = problem.size_of(g * g * dot(&self.change, &self.residual).abs());
-            if std::env::var("DBG").is_ok() {
-                let (mut best, mut at) = (0.0, 0);
-                for i in 0..self.change.len() {
-                    let e = (self.change[i] * self.residual[i]).abs();
-                    if e > best {
-                        (best, at) = (e, i);
-                    }
-                }
-                let node = 6 * (at / 6);
-                eprintln!(
-                    "t {t:.5} g {g:.2e} stage {i} it {} size {size:.3e} rate {:.2e} at node {} comp {} du {:.2e} {:.2e} {:.2e} r {:.3} {:.3} {:.4}",
-                    progress.count,
-                    progress.rate,
-                    at / 6,
-                    at % 6,
-                    g * g * self.change[node],
-                    g * g * self.change[node + 1],
-                    g * g * self.change[node + 2],
-                    self.stage[0][node],
-                    self.stage[0][node + 1],
-                    self.stage[0][node + 2]
-                );
-            }
             match progress.judge(size) {
                 Some(Outcome::Stalled) if self.renewals > 0 && self.renew(problem, i, t, g) => progress = Progress::new(0.0),
                 Some(outcome) => break outcome,

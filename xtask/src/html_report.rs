@@ -25,6 +25,7 @@ figure img{display:block;max-width:100%;height:auto;margin:auto}
 .wide{overflow-x:auto}
 .wide table{font-size:.84rem;min-width:100%}
 .wide th,.wide td{padding:.3rem .6rem}
+.wide th.number{white-space:normal}
 .figures td:first-child{min-width:22rem}
 .gallery{display:grid;grid-template-columns:repeat(auto-fill,minmax(30rem,1fr));gap:.8rem;margin:1rem 0}
 .gallery figure{margin:0}

@@ -61,7 +61,6 @@ fn synthetic() -> DemoData {
             ("Sea".into(), "JONSWAP, Hs 2.5 m, Tp 8 s, γ 3.3, heading 160°, scale 1:60".into()),
             ("Communication step".into(), "0.02 s".into()),
         ],
-        animation: None,
         machine: "made-up numbers, no machine".into(),
         animation: None,
     }

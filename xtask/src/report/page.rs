@@ -41,7 +41,7 @@ pub fn write_hard(sections: &[Section], folder: &Path) -> Result<()> {
         "Energy error: the FMU's own solver.energy_error at the end, work and energy over the work done. Momentum defect, for cables in vacuum: \
          weight and the forces on all supports, integrated over the communication points, against the momentum that the drawn points and the \
          body show, over the greatest; it comes from outputs alone, and is of second order in the communication step. Solves are linear solves. \
-         Charts: blue as shipped, grey dashes with twice the elements.",
+         Charts: blue as shipped, grey beneath it with twice the elements.",
     );
     let count = |verdict: Verdict| sections.iter().flat_map(Section::figures).filter(|row| row.verdict() == verdict).count().to_string();
     page.tiles(&[(count(Verdict::Holds), "figures within their bound"), (count(Verdict::Missed), "outside")]);

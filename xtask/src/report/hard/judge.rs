@@ -212,11 +212,11 @@ impl Findings {
         let seconds: f64 = self.refinements().map(|(_, run)| run.seconds).sum::<f64>() + self.shipped.seconds;
         let message = self.shipped.stopped.as_ref().map_or("", |(_, m)| m);
         format!(
-            "    {}: {}; energy {:.1e}; momentum {:.1e}; steps {:?}; {}; {seconds:.1} s {message}",
+            "    {}: {}; energy {:.1e}; momentum {}; steps {:?}; {}; {seconds:.1} s {message}",
             self.case.name,
             self.shipped.end(),
             self.shipped.energy_error,
-            self.shipped.momentum.unwrap_or(f64::NAN),
+            self.shipped.momentum.map_or("-".into(), |m| format!("{m:.1e}")),
             self.shipped.counts,
             figures.join("; "),
         )
@@ -230,8 +230,8 @@ impl Findings {
             let (x, y) = outline(&run.times, &y);
             Series::new(label, &x, &y, colour)
         };
-        let mut lines = vec![series("as shipped", &self.shipped, PALETTE[0])];
-        lines.extend(self.finer.iter().map(|run| series("twice the elements", run, SOFT).dashed().width(1.1)));
+        let mut lines: Vec<Series> = self.finer.iter().map(|run| series("twice the elements", run, SOFT).width(2.4)).collect();
+        lines.push(series("as shipped", &self.shipped, PALETTE[0]));
         let chart = Chart::new(&self.case.name, "Time, s", vec![Panel::new(label, lines).height(150.0)]);
         (slug(&self.case.name), Chart { width: 520.0, ..chart })
     }

@@ -9,7 +9,7 @@ use model_description::Kind;
 use std::time::{Duration, Instant};
 
 /// A run that takes longer counts as hung.
-const PATIENCE: Duration = Duration::from_secs(240);
+const PATIENCE: Duration = Duration::from_secs(600);
 
 /// What a run gave.
 #[derive(Clone, Debug, Default)]

@@ -62,7 +62,7 @@ fn slack() -> Result<Case> {
          [[sheave]]\nposition = [0, 0, 0]\naxis = [0, 1, 0]\nradius = 0.25\nstiffness = 1e9\ngroove_angle = {FRAC_PI_4:?}\ngroove_depth = 0.03\n\
          [solver]\ntolerance = 1e-3\n"
     );
-    let scene = wire.scene(G, 1, 0, &rest)?.with("mesh", regions(&[(1.8, 9), (0.9, 18), (9.3, 9)]));
+    let scene = wire.scene(G, 1, 0, &rest)?.with("mesh", regions(&[(1.8, 14), (0.9, 28), (9.3, 18)]));
     Ok(Case::new("Slack over the sheave", scene, Times::Equal(5e-3, 7.0), ("sheave[1].normal_force", "Force on the sheave, kN", 1e-3))
         .happens(
             "A ship heaves so hard that 100 kg on its wire float: the wire goes slack in the groove of the sheave and snaps into it again.",
@@ -74,30 +74,31 @@ fn slack() -> Result<Case> {
 }
 
 /// From an anchor at the height of the top over the sheave straight down to a body with a force on it.
-fn hang(surface: &str, mass_per_length: f64) -> Result<Scene> {
+fn hang(surface: &str, mass_per_length: f64, tolerance: f64, mesh: [i64; 3]) -> Result<Scene> {
     let rest = format!(
-        "[anchor]\nposition = [-0.3, 0, {R}]\n{}[body]\nmass = 10\nforce_input = true\n[solver]\ntolerance = 1e-4\n",
+        "[anchor]\nposition = [-0.3, 0, {R}]\n{}[body]\nmass = 10\nforce_input = true\n[solver]\ntolerance = {tolerance:?}\n",
         sheave(surface)
     );
-    Ok(Wire { mass_per_length, ..ROPE }.scene(G, 1, 0, &rest)?.with("mesh", regions(&[(0.28, 14), (0.12, 60), (0.3, 10)])))
+    let [before, over, below] = mesh;
+    Ok(Wire { mass_per_length, ..ROPE }.scene(G, 1, 0, &rest)?.with("mesh", regions(&[(0.28, before), (0.12, over), (0.3, below)])))
 }
 
 fn climbing() -> Result<Case> {
-    Ok(Case::new("Climbing out of the groove", hang("stiffness = 1e8\ndamping = 5\ngroove_angle = 1.5707963267948966\ngroove_depth = 0.008\n", 0.06)?, Times::Equal(2e-3, 2.5), ("sheave[1].out_of_groove", "Out of the groove", 1.0))
+    Ok(Case::new("Climbing out of the groove", hang("stiffness = 1e8\ndamping = 5\ngroove_angle = 1.5707963267948966\ngroove_depth = 0.008\n", 0.06, 5e-4, [5, 20, 4])?, Times::Equal(2e-3, 2.5), ("sheave[1].out_of_groove", "Out of the groove", 1.0))
         .happens(
             "A growing force along the sheave's axis pulls the body aside; the rope runs up a flank of the groove at a growing fleet angle, passes the rim, slips off the sheave's side, and the body falls until the rope is straight.",
             "",
         )
         .record(&["body.y", "body.z", "sheave[1].normal_force", "anchor.tension"])
         .driven(&["body.force.y"], |t| vec![60.0 * t])
-        .asks(Quantity::new("first out of the groove", "s", Amount(1e-2), |run| run.first_crossing("sheave[1].out_of_groove", 0.5, true)))
+        .asks(Quantity::new("first out of the groove", "s", Amount(5e-2), |run| run.first_crossing("sheave[1].out_of_groove", 0.5, true)))
         .asks(Quantity::new("off the sheave", "s", Amount(1e-2), |run| run.first_crossing("sheave[1].normal_force", 1.0, false)))
-        .asks(Quantity::new("greatest tension at the anchor", "N", Share(2e-2), |run| run.peak("anchor.tension"))))
+        .asks(Quantity::new("greatest tension at the anchor", "N", Share(5e-2), |run| run.peak("anchor.tension"))))
 }
 
 fn margin() -> Result<Case> {
     let push = |t: f64| 100.0 * (PI * t / 6.0).sin().powi(2);
-    Ok(Case::new("Detachment margin through zero", hang("", 0.01)?, Times::Equal(5e-3, 6.0), ("sheave[1].line_load_min", "Least line load, N/m", 1.0))
+    Ok(Case::new("Detachment margin through zero", hang("", 0.01, 1e-4, [14, 60, 10])?, Times::Equal(5e-3, 6.0), ("sheave[1].line_load_min", "Least line load, N/m", 1.0))
         .happens(
             "A force lifts the body until the rope is slack and lets it down again: the least line load in the contact arc, T/R while the rope is taut, goes to zero and comes back.",
             "",
