@@ -255,7 +255,6 @@ impl Simulation {
         self.set_tolerance();
         self.settle();
         self.system.save_axial(&mut self.state.n);
-        self.state.base = self.system.environment(time).base.map(|b| b.0[2]);
         self.observe();
         self.begin_compensation()?;
         self.observe_setpoint();
@@ -324,14 +323,14 @@ impl Simulation {
 
     /// Outputs of the present state, whose accelerations are known.
     fn observe(&mut self) {
-        let s = &self.state;
-        self.system.balance(s.time, &s.u, &s.w, &s.a, &mut self.work.force);
-        if self.balance_tells() {
-            let s = &mut self.state;
+        let tells = self.balance_tells();
+        let s = &mut self.state;
+        let env = self.system.environment(s.time);
+        s.base = env.base.map(|b| b.0[2]);
+        self.system.balance(&env, &s.u, &s.w, &s.a, &mut self.work.force);
+        if tells {
             s.ledger.reach(&self.system.tally, &s.w, &self.work.force);
         }
-        let s = &self.state;
-        let env = self.system.environment(s.time);
         observe(&self.system, &env, &s.u, &s.w, &self.work.force, &mut self.outputs);
         if let FirstEnd::Winch { geometry, .. } = &self.system.first {
             self.outputs.winch.payout = geometry.sense * (self.outputs.winch.angle - s.first_angle) * geometry.radius;
@@ -408,7 +407,6 @@ impl Simulation {
             drive.commit(time);
         }
         self.system.save_axial(&mut self.state.n);
-        self.state.base = self.system.environment(time).base.map(|b| b.0[2]);
         self.conclude();
         self.observe();
         if self.is_finite() { Ok(()) } else { Err(format!("at t = {time} s: {NOT_FINITE}")) }

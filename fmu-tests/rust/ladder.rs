@@ -57,7 +57,7 @@ fn each(x: &[f64], f: impl Fn(Vector3<f64>) -> Vector3<f64>) -> Vec<f64> {
 
 fn balance(system: &mut System, u: &[f64], w: &[f64], a: &[f64]) -> Vec<f64> {
     let mut f = vec![0.0; u.len()];
-    system.balance(0.0, u, w, a, &mut f);
+    system.balance(&system.environment(0.0), u, w, a, &mut f);
     f
 }
 

@@ -14,8 +14,12 @@ pub(super) fn is_wound_up(system: &System, t: f64, u: &[f64]) -> bool {
         return false;
     }
     let Some(drum) = system.surfaces.first() else { return false };
-    let frame = SurfaceFrame::new(drum, &system.environment(t), true);
+    // The first node lies on the rim, so a far end that is farther from it cannot be near.
     let at = 6 * (system.arc.len() - 1);
+    if u[at..at + 3].iter().map(|x| x * x).sum::<f64>() > ((2.0 + 2.0 * NEAR) * drum.radius).powi(2) {
+        return false;
+    }
+    let frame = SurfaceFrame::new(drum, &system.environment(t), true);
     let end = frame.place(&[u[at], u[at + 1], u[at + 2]]);
     drum.least_gap(&end) < NEAR * drum.radius
 }

@@ -145,10 +145,10 @@ impl<const W: usize> AxialUnknown<W> {
         self.offset = offset;
     }
 
-    /// Newton's method has ended with element `l` in this shape.
+    /// N of element `l` where Newton's method has ended in this shape.
     #[inline(always)]
-    pub fn settle(&mut self, l: usize, s: &Strains) {
-        self.now.0[l] = self.offset.0[l] + self.slope(l, s);
+    pub fn settled(&self, l: usize, s: &Strains) -> f64 {
+        self.offset.0[l] + self.slope(l, s)
     }
 
     /// A step begins here.

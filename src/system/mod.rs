@@ -152,6 +152,8 @@ pub struct System {
     crossed: Vec<usize>,
     /// Where the last tangent was taken.
     origin: Environment,
+    /// At the stage in which Newton's method iterates.
+    stage: Environment,
 }
 
 impl System {
@@ -214,6 +216,7 @@ impl System {
             near: Near::new(n),
             crossed: Vec::with_capacity(n),
             origin: Environment::default(),
+            stage: Environment::default(),
         }
     }
 
@@ -440,11 +443,15 @@ impl System {
 
     fn force_at(&mut self, axially: Axially, t: f64, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64]) {
         let env = self.environment(t);
+        self.force_in(&env, axially, u, w, a, f);
+    }
+
+    fn force_in(&mut self, env: &Environment, axially: Axially, u: &[f64], w: &[f64], a: Option<&[f64]>, f: &mut [f64]) {
         let mut none = std::mem::take(&mut self.matrices);
-        self.evaluate::<false>(&env, u, w, a, axially, f, &mut none);
+        self.evaluate::<false>(env, u, w, a, axially, f, &mut none);
         self.matrices = none;
         f[..3].fill(0.0);
-        self.drive_far_end(&env, a, f);
+        self.drive_far_end(env, a, f);
     }
 
     /// F, and M, D, K of F − M(u) a, in the environment of `origin`.
@@ -468,10 +475,9 @@ impl System {
     }
 
     /// Forces with all inertia, nothing zeroed: rows of the first node hold what the support must balance.
-    pub fn balance(&mut self, t: f64, u: &[f64], w: &[f64], a: &[f64], f: &mut [f64]) {
-        let env = self.environment(t);
+    pub fn balance(&mut self, env: &Environment, u: &[f64], w: &[f64], a: &[f64], f: &mut [f64]) {
         let mut none = std::mem::take(&mut self.matrices);
-        self.evaluate::<false>(&env, u, w, Some(a), Axially::Law, f, &mut none);
+        self.evaluate::<false>(env, u, w, Some(a), Axially::Law, f, &mut none);
         self.matrices = none;
     }
 }
@@ -549,7 +555,11 @@ impl Problem for System {
     }
 
     fn iterate(&mut self, first: bool, t: f64, u: &[f64], w: &[f64], a: &[f64], f: &mut [f64]) {
-        self.force_at(Axially::Iterate { first }, t, u, w, Some(a), f);
+        if first {
+            self.stage = self.environment(t);
+        }
+        let env = self.stage;
+        self.force_in(&env, Axially::Iterate { first }, u, w, Some(a), f);
     }
 
     fn adopt(&mut self, u: &[f64], w: &[f64]) {

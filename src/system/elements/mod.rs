@@ -136,6 +136,42 @@ impl<const TANGENT: bool> Kernel for Pass<'_, TANGENT> {
     }
 }
 
+struct Settle<'a> {
+    chain: &'a Chain,
+    u: &'a [f64],
+    w: &'a [f64],
+    axial: &'a mut [Axial],
+}
+
+impl Kernel for Settle<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { chain, u, w, axial } = self;
+        let stations = GAUSS3.map(Station::new);
+        let mut batch = Batch::default();
+        for (k, axial) in axial.iter_mut().enumerate() {
+            for l in 0..LANES {
+                // Beyond the last element the last one again, whose N nobody reads.
+                let e = (k * LANES + l).min(chain.lengths.len() - 1);
+                batch.inverse.0[l] = 1.0 / chain.lengths[e];
+                gather_lane(u, e, chain.lengths[e], l, &mut batch.u);
+                gather_lane(w, e, chain.lengths[e], l, &mut batch.w);
+            }
+            for (station, axial) in stations.iter().zip(axial) {
+                // A copy, since only of what is its own does the compiler know that nothing else changes it.
+                let known = *axial;
+                for l in 0..LANES {
+                    let i = batch.inverse.0[l];
+                    let (p, vp) = (along(&station.b, &spans(&batch.u, l), i), along(&station.b, &spans(&batch.w, l), i));
+                    axial.now.0[l] = known.settled(l, &Strains { p, pp: [0.0; 3], vp, vpp: [0.0; 3] });
+                }
+            }
+        }
+    }
+}
+
 impl Chain {
     /// Room for the axial forces of all elements.
     pub fn axial(&self) -> Vec<Axial> {
@@ -255,7 +291,7 @@ impl Chain {
 
     /// Newton's method has ended at (u, w).
     pub fn settle(&self, u: &[f64], w: &[f64], axial: &mut [Axial]) {
-        self.at_stations(u, w, axial, |axial, l, strains| axial.settle(l, strains));
+        widest(Settle { chain: self, u, w, axial });
     }
 
     /// Calls `each` with every axial unknown and the slopes there.
