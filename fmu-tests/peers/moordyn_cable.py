@@ -77,6 +77,7 @@ WIRE = {
     "rest_step": 1.0,
     "rest_within": 1e-7,
 }
+REACH = math.hypot(0.7097202495, 0.6868668200)
 NYLON = {
     "diameter": 4.5e-4,
     "mass": 2e-4,
@@ -88,8 +89,9 @@ NYLON = {
     "axial_drag": 0.05,
     "top": 0.46,
     "length": 1.01,
-    "x": 0.55,
-    "z": -0.37,
+    # Straight towards the place where the sphere would rest: MoorDyn finds its own start without the current.
+    "x": 1.01 * 0.7097202495 / REACH,
+    "z": 0.46 - 1.01 * 0.6868668200 / REACH,
     "body_mass": 1.33e-3,
     "volume": 5.235987755982989e-7,
     "drag_area": 0.45 * 7.853981633974483e-5,
@@ -117,7 +119,7 @@ def eased(t, amplitude, period):
 SCENES = {
     "p4a": (WIRE, lambda t: eased(t, 2.5, 6.0)),
     "p4b": (WIRE, lambda t: eased(t, 5.0, 4.0)),
-    "p5": (NYLON, lambda t: eased(t, float(os.environ.get("AMP","0.01")), 1.0)),
+    "p5": (NYLON, lambda t: eased(t, 0.01, 1.0)),
 }
 
 
