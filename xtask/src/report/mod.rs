@@ -3,6 +3,7 @@
 //! One file a section; each packs the scenes it needs and returns a [`Section`]. A further section is a further line in [`SECTIONS`].
 
 mod bench;
+mod cases;
 mod cost;
 mod dynamics;
 mod edge;
@@ -18,6 +19,9 @@ mod pace;
 mod page;
 mod peers;
 mod pulley;
+mod real_time;
+mod rival_runs;
+mod rivals;
 mod row;
 mod scene;
 mod section;
@@ -27,6 +31,7 @@ mod sheaves;
 mod speed;
 mod statics;
 mod tangent;
+mod track;
 #[path = "../../../fmu-tests/rust/bench/wire.rs"]
 mod wire;
 

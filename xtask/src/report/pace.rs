@@ -12,8 +12,8 @@ const STEP: f64 = 0.02;
 /// Bounds on the sub-steps tried in one; 0 is none.
 const TRIES: [u32; 4] = [0, 8, 4, 2];
 
-/// The sea of the scene's own page.
-fn sea(duration: f64) -> Options {
+/// The sea of the scene's own page, for so many seconds.
+pub(super) fn sea(duration: f64) -> Options {
     Options { heading: 150.0, duration, step: STEP, ..Options::default() }
 }
 

@@ -57,13 +57,18 @@ pub fn write_hard(sections: &[Section], folder: &Path) -> Result<()> {
 ///
 /// # Errors
 /// Files that cannot be written.
-pub fn write_speed(sections: &[Section], machine: &str, numbers: &str, folder: &Path) -> Result<()> {
+pub fn write_speed(sections: &[Section], machine: &str, peers: bool, numbers: &str, folder: &Path) -> Result<()> {
     let mut page = Page::new("fairlead: speed against error").wide();
     page.paragraph(&format!(
         "Written by \u{201c}cargo xtask bench\u{201d} on {machine}. Each packed scene was run by every time integrator at tolerances from \
-         1e-2 to 1e-5, one thread, nothing beside it; the time is that of the communication loop (inputs, step, outputs), the least of three \
-         runs where they are short. Times are this machine's and good to a third; sub-steps and errors are exact. Other programs are not \
-         run by this command yet; what was measured of them stands in the report. All numbers are in work.csv."
+         1e-2 to 1e-5 on one thread; the time is the processor's in the communication loop (inputs, step, outputs), the least of three runs where \
+         they are short. Times are this machine's and good to a third; sub-steps and errors are exact. {} All numbers are in work.csv.",
+        if peers {
+            "Other programs ran on the same scenes in between."
+        } else {
+            "Other programs were not run for this page, so their curves are left out; \u{201c}cargo xtask bench --peers\u{201d} runs them. What \
+             was measured of them elsewhere stands in the report."
+        }
     ));
     body(&mut page, sections);
     publish(folder, |folder| {

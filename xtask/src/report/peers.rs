@@ -4,7 +4,7 @@ use super::bench::{Bench, Drive, Record, point, record, side_by_side};
 use super::must_hold::Must;
 use super::numerics::{extremes, pairs, relative_rms, rms, table};
 use super::row::{Row, Truth::Cross, figure, share};
-use super::scene::{G, HEAVED, HEAVY_WIRE, NYLON, Row as ShapeRow, Scene, Wire, heave};
+use super::scene::{G, HEAVED, HEAVY_WIRE, NYLON, Row as ShapeRow, SHEAR_FLOW, Scene, Wire, heave};
 use super::section::{Section, thinned};
 use super::wire::pulley_pendulum;
 use crate::error::Result;
@@ -247,15 +247,11 @@ fn p4b(bench: &Bench) -> Result<Comparison> {
 
 fn p5(bench: &Bench) -> Result<Comparison> {
     let reference = table(P5);
-    let rest = "[anchor]\nposition = [0, 0, 0.46]\n\
-        [fluid]\ndensity = 1026\nwaterline = 0\nadded_mass = 1\ncurrent.profile = [[0, 0.3302, 0], [-0.5, 0.03655, 0]]\n\
-        drag = { law = \"cross_flow\", cd_normal = 2.30, cd_tangential = 0.05 }\n\
-        [body]\nmass = 1.33e-3\nvolume = 5.235987755982989e-7\ndrag_area = 7.853981633974483e-5\ndrag_coefficient = 0.45\n";
     let wire = Wire { length: 1.01, ei: 0.0, ..NYLON };
     let (mut rows, mut lines, mut shape) = (Vec::new(), Vec::new(), Vec::new());
     // Mesh errors as the Rust tests measure them at the nodes; between nodes the drag's kink at the water's surface shows.
     for (elements, near, pull) in [(20, 2e-4, 9e-5), (101, 2e-6, 6e-7)] {
-        let sim = bench.rest(&wire.scene(G, elements, reference.len(), rest)?)?;
+        let sim = bench.rest(&wire.scene(G, elements, reference.len(), SHEAR_FLOW)?)?;
         shape = (1..=reference.len()).map(|k| point(&sim, k)).collect::<Result<Vec<_>>>()?;
         let far = shape.iter().zip(&reference).map(|(p, r)| (p[0] - r[1]).hypot(p[2] - r[2])).fold(0.0, f64::max);
         let tension = sim.get("anchor.tension")?;

@@ -107,6 +107,12 @@ pub const HEAVY_WIRE: Wire =
 /// P4's other tables.
 pub const HEAVED: &str = "[anchor]\nposition = [0, 0, 0]\n[body]\nmass = 500\n[ship]\ninput = \"pose_velocity_acceleration\"\n";
 
+/// P5's tables: held above the water, a sphere in the flume's shear flow.
+pub const SHEAR_FLOW: &str = "[anchor]\nposition = [0, 0, 0.46]\n\
+    [fluid]\ndensity = 1026\nwaterline = 0\nadded_mass = 1\ncurrent.profile = [[0, 0.3302, 0], [-0.5, 0.03655, 0]]\n\
+    drag = { law = \"cross_flow\", cd_normal = 2.30, cd_tangential = 0.05 }\n\
+    [body]\nmass = 1.33e-3\nvolume = 5.235987755982989e-7\ndrag_area = 7.853981633974483e-5\ndrag_coefficient = 0.45\n";
+
 /// P4's ship heave s(t) A sin(2πt/T), s a half-cosine ramp over two periods: z, its rate and acceleration.
 pub fn heave(t: f64, amplitude: f64, period: f64) -> Vec<f64> {
     let (ramp, w) = (2.0 * period, 2.0 * PI / period);
