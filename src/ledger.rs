@@ -25,8 +25,9 @@ pub struct Ledger {
     pending: [f64; 3],
 }
 
+/// Power of all but the elastic forces, W, and its size, of an evaluation that gave `f` = F − M a, with a or without.
 fn powers(tally: &Tally, w: &[f64], f: &[f64]) -> [f64; 2] {
-    let (mut sum, mut size) = (0.0, 0.0);
+    let [mut sum, mut size] = tally.inertial;
     for (w, f) in w.chunks_exact(6).zip(f.chunks_exact(6)) {
         let p: f64 = w.iter().zip(f).map(|(a, b)| a * b).sum();
         sum += p;
@@ -36,13 +37,13 @@ fn powers(tally: &Tally, w: &[f64], f: &[f64]) -> [f64; 2] {
 }
 
 impl Ledger {
-    /// At the start.
-    pub fn start(tally: &Tally, floor: f64) -> Self {
+    /// At the start, which is balanced by `f`.
+    pub fn start(tally: &Tally, w: &[f64], f: &[f64], floor: f64) -> Self {
         let energy = tally.elastic + tally.kinetic;
-        Self { first: energy, energy, floor, ..Self::default() }
+        Self { first: energy, energy, floor, power: powers(tally, w, f), ..Self::default() }
     }
 
-    /// A state is reached; `f` are the forces there without M a.
+    /// A state is reached; `f` are the forces there, with M a or without.
     pub fn reach(&mut self, tally: &Tally, w: &[f64], f: &[f64]) {
         let now = powers(tally, w, f);
         let [h, mid, mid_size] = self.pending;

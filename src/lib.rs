@@ -9,6 +9,7 @@ pub mod integrator;
 pub mod ledger;
 pub mod linalg;
 pub mod math;
+pub mod mesh;
 pub mod outputs;
 pub mod scene;
 pub mod ship;

@@ -3,7 +3,9 @@
 mod compensation;
 mod direction;
 mod drives;
+mod laid;
 mod rates;
+mod reel;
 mod sensitivity;
 
 use crate::equilibrium;
@@ -113,6 +115,8 @@ struct Work {
     constant_mass: Option<BlockTridiagonal>,
     /// The worst error, in tolerable ones, that the last communication step accepted for want of time.
     overrun: f64,
+    /// Whether forces from outside jump where the communication step begins, so that the power at its begin is not that at the end of the last.
+    jumped: bool,
     /// The outputs at the begin of a step, and where the tangent was taken.
     outputs: Vec<f64>,
     tangent: Vec<f64>,
@@ -150,6 +154,7 @@ impl Simulation {
                 mid: [zeros(), zeros(), zeros()],
                 constant_mass,
                 overrun: 0.0,
+                jumped: true,
                 outputs: Vec::new(),
                 tangent: Vec::new(),
             },
@@ -198,7 +203,7 @@ impl Simulation {
         let weight = (mass * scene.gravity).max(1e-9 * scene.cable.ea);
         match &scene.initial {
             Initial::Equilibrium => {
-                let down = Vector3::new(0.0, 0.0, if net_weight(scene) >= 0.0 { -1.0 } else { 1.0 });
+                let down = laid::direction(scene, system, time);
                 let mut start = match system.far_end {
                     Some(_) => equilibrium::lay_between(system, time, &down),
                     None => equilibrium::lay_out(system, time, &down),
@@ -261,7 +266,9 @@ impl Simulation {
         self.method.forget();
         self.state.step = self.first_step();
         self.state.last = [0.0; 2];
-        self.state.ledger = Ledger::start(&self.system.tally, self.state.tension * self.scene.cable.diameter);
+        // Where less has been done than the tension does over this, the defect's share of it says nothing.
+        let floor = self.state.tension * self.scene.cable.diameter.max(1e-3 * self.scene.cable.length);
+        self.state.ledger = Ledger::start(&self.system.tally, &self.state.w, &self.work.force, floor);
         self.outputs.solver = Default::default();
         self.outputs.status = Default::default();
         if self.is_finite() { Ok(()) } else { Err(SimError::Start(NOT_FINITE.into())) }
@@ -292,9 +299,18 @@ impl Simulation {
         }
     }
 
-    /// Accelerations and the ledger's last entry at the end of a communication step. Where the mass matrix depends on the shape the method
-    /// has carried the accelerations along; elsewhere it has been factored once for all.
+    /// Whether the ledger's entry at the end of a communication step is that of the forces which balance it there: only where the accelerations
+    /// are known before, and but for a far end, whose support does work.
+    fn balance_tells(&self) -> bool {
+        (self.method.carries_over() || self.work.constant_mass.is_none()) && self.system.far_end.is_none()
+    }
+
+    /// Accelerations and the ledger's entry at the end of a communication step, where the balance there does not tell. Where the mass matrix
+    /// depends on the shape the method has carried the accelerations along; elsewhere it has been factored once for all.
     fn conclude(&mut self) {
+        if self.balance_tells() {
+            return;
+        }
         let (s, k) = (&mut self.state, &mut self.work);
         self.system.force(s.time, &s.u, &s.w, None, &mut k.force);
         s.ledger.reach(&self.system.tally, &s.w, &k.force);
@@ -310,6 +326,11 @@ impl Simulation {
     fn observe(&mut self) {
         let s = &self.state;
         self.system.balance(s.time, &s.u, &s.w, &s.a, &mut self.work.force);
+        if self.balance_tells() {
+            let s = &mut self.state;
+            s.ledger.reach(&self.system.tally, &s.w, &self.work.force);
+        }
+        let s = &self.state;
         let env = self.system.environment(s.time);
         observe(&self.system, &env, &s.u, &s.w, &self.work.force, &mut self.outputs);
         if let FirstEnd::Winch { geometry, .. } = &self.system.first {
@@ -399,6 +420,8 @@ impl Simulation {
         // Tries left of this communication step, in real time.
         let (real_time, mut left) = (solver.tries_max > 0, solver.tries_max);
         self.work.overrun = 0.0;
+        // Where nothing jumps the power at the begin is that at the end of the last communication step.
+        let mut known = !self.work.jumped && self.method.carries_over();
         while self.state.time < end {
             let s = &mut self.state;
             let k = &mut self.work;
@@ -409,8 +432,10 @@ impl Simulation {
                 parts = parts.min(left as f64);
             }
             let mut h = remaining / parts;
-            self.method.begin(&mut self.system, s.time, [&s.u, &s.w, &s.a], &mut k.force);
-            s.ledger.reach(&self.system.tally, &s.w, &k.force);
+            if !std::mem::take(&mut known) {
+                self.method.begin(&mut self.system, s.time, [&s.u, &s.w, &s.a], &mut k.force);
+                s.ledger.reach(&self.system.tally, &s.w, &k.force);
+            }
             self.system.keep_axial();
             loop {
                 self.system.attempt(s.time, h);
@@ -480,6 +505,9 @@ impl Simulation {
             self.system.reach(to, &mut s.u, &mut s.w, &mut s.a);
             s.time = to;
             s.counts[0] += 1;
+            if reel::is_wound_up(&self.system, to, &s.u) {
+                return Err(reel::message(to));
+            }
             if taken >= solver.steps_max && s.time < end {
                 let node = self.worst_node();
                 return Err(self.failure(end, node, "solver.steps_max sub-steps were not enough"));
@@ -582,10 +610,13 @@ impl Simulation {
         Ok(())
     }
 
-    /// Whether all numbers of state and outputs are.
+    /// Whether the numbers of state and outputs are finite.
     fn is_finite(&mut self) -> bool {
-        let mut finite = true;
-        self.visit(&mut |x| finite &= x.is_finite());
+        let s = &self.state;
+        // Without a branch, so that they go side by side.
+        let all = |x: &[f64]| x.iter().fold(true, |all, x| all & x.is_finite());
+        let mut finite = all(&s.u) && all(&s.w) && all(&s.a) && all(&s.n) && s.ledger.error().is_finite();
+        self.outputs.visit(&mut |x| finite &= x.is_finite());
         finite
     }
 
@@ -642,12 +673,4 @@ impl State {
         (self.time, self.step, self.last, self.tension, self.first_angle) = (o.time, o.step, o.last, o.tension, o.first_angle);
         (self.counts, self.ledger, self.base) = (o.counts, o.ledger, o.base);
     }
-}
-
-/// Weight less buoyancy of cable and body when all is under water, N.
-fn net_weight(scene: &Scene) -> f64 {
-    let (cable, body) = (&scene.cable, scene.body.as_ref());
-    let mass = cable.mass_per_length * cable.length + body.map_or(0.0, |b| b.mass) + scene.load.map_or(0.0, |l| l.mass);
-    let volume = std::f64::consts::PI * cable.diameter.powi(2) / 4.0 * cable.length + body.map_or(0.0, |b| b.volume);
-    mass - scene.fluid.as_ref().map_or(0.0, |f| f.density * volume)
 }

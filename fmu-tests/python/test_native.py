@@ -2,12 +2,16 @@
 
 import math
 import os
+import re
 import shutil
 import subprocess
 import sys
 
 import native
 import pytest
+
+# Instructions per simulated second of the flume, the day they were counted (rustc 1.95, baseline x86-64).
+FROZEN_INSTRUCTIONS = 144_000_000
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux" or not shutil.which("cc"), reason="needs Linux and a C compiler named cc")
 
@@ -42,3 +46,20 @@ def test_exact_valgrind_finds_nothing(flume, host):
     command = [*memcheck, host, *native.arguments(flume.folder, "binaries/linux64/flume.so", 0.04)]
     done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "FAIRLEAD_SIMD": "baseline"})
     assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.skipif(not shutil.which("valgrind"), reason="valgrind is not installed")
+def test_frozen_instructions_of_a_simulated_second(flume, host, tmp_path):
+    """What a step costs, counted and not timed: instructions of the flume's kernels for old processors, the start taken off."""
+
+    def instructions(seconds):
+        counted = tmp_path / f"callgrind-{seconds}"
+        command = [host, *native.arguments(flume.folder, "binaries/linux64/flume.so", seconds)]
+        callgrind = ["valgrind", "--quiet", "--tool=callgrind", f"--callgrind-out-file={counted}", *command]
+        subprocess.run(callgrind, check=True, capture_output=True, env={**os.environ, "FAIRLEAD_SIMD": "baseline"})
+        return int(re.search(r"^(?:summary|totals): (\d+)", counted.read_text(), re.M)[1])
+
+    per_second = (instructions(0.6) - instructions(0.2)) / 0.4
+    print(f"{per_second / 1e6:.0f} million instructions per simulated second")
+    # Another compiler may need some more; a kernel that fell back to one number at a time needs twice as many.
+    assert per_second < 1.1 * FROZEN_INSTRUCTIONS

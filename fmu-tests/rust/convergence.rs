@@ -183,7 +183,7 @@ fn of_all_kinds() -> impl Iterator<Item = Scene> {
         scene.winch.iter_mut().for_each(|w| w.setpoint = setpoint);
         scene
     });
-    let methods = [Method::Rodas4, Method::TrBdf2, Method::Esdirk3, Method::Esdirk4].into_iter().flat_map(|method| {
+    let methods = [Method::Rodas4, Method::TrBdf2, Method::Esdirk3, Method::Esdirk4, Method::Radau5].into_iter().flat_map(|method| {
         [reeled("tangent", 1e-3, false), reeled("pinned", 1e-3, true), turning()].map(|mut scene| {
             scene.solver.method = method;
             scene

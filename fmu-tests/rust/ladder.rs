@@ -372,7 +372,8 @@ fn exact_tangent_end_holds_the_slope_along_the_moving_drum() {
     let mut system = System::new(&scene);
     stir(&mut system);
     let (u, w, a) = (curve(&system, 0.0, 1.0), curve(&system, 1.0, 0.0), curve(&system, 2.0, 0.0));
-    let e = tangent_errors(&mut system, 0.04, [&u, &w, &a], 1e-5);
+    // The clamp's force is large beside what the damping changes, so rounding asks for longer differences.
+    let e = tangent_errors(&mut system, 0.04, [&u, &w, &a], 5e-5);
     report("a tangent end", e);
     // The clamp is linear in the slope.
     assert!(e[0] < SMOOTH && e[1] < SMOOTH && e[2] < ROUNDING && e[3] < ROUNDING, "{e:?}");

@@ -1,4 +1,4 @@
-//! The time integrators against each other: one physics, four ways through time.
+//! The time integrators against each other: one physics, five ways through time.
 
 mod bench;
 
@@ -6,7 +6,7 @@ use bench::{HEAVY_WIRE, NYLON, Wire, channel, heaving, relative_rms, run, starte
 use fairlead::scene::{Method, Scene};
 use fairlead::sim::{Inputs, Simulation};
 
-const METHODS: [Method; 4] = [Method::Rodas4, Method::TrBdf2, Method::Esdirk3, Method::Esdirk4];
+const METHODS: [Method; 5] = [Method::Rodas4, Method::TrBdf2, Method::Esdirk3, Method::Esdirk4, Method::Radau5];
 
 /// Tension at the first end every `h`, and the finished run.
 fn tensions(scene: &Scene, h: f64, end: f64, inputs: impl Fn(f64) -> Inputs) -> (Vec<f64>, Simulation) {
@@ -25,7 +25,7 @@ struct Case {
     inputs: Box<dyn Fn(f64) -> Inputs>,
 }
 
-fn cases() -> [Case; 4] {
+fn cases() -> [Case; 5] {
     let string = Wire { laws: "compression = \"linear\"\ndamping.axial = 0.02", ..NYLON };
     let p3 = "[anchor]\nposition = [0, 0, 0]\n[body]\nmass = 1.33e-3\n[initial]\nstate = \"straight\"\ndirection = [1, 0, 0]\n";
     let p4 = "[anchor]\nposition = [0, 0, 0]\n[body]\nmass = 500\n[ship]\ninput = \"pose_velocity_acceleration\"\n";
@@ -35,6 +35,9 @@ fn cases() -> [Case; 4] {
                   gain_position = 200\ngain_rate = 20\nstiffness = 1e6\ndamping = 0.1\n[fluid]\ndensity = 1000\nviscosity = 1e-3\nwaterline = -0.5\n\
                   current.profile = [[0, 0.2, 0.1], [-2, 0.1, 0]]\ndrag = { law = \"loading_functions\", cd = \"cylinder\" }\n\
                   [body]\nmass = 0.5\nvolume = 1e-4\ndrag_area = 3e-3\ndrag_coefficient = \"sphere\"\n";
+    let turning = "[anchor]\nposition = [-0.3, 0, 0.1]\n[[sheave]]\nposition = [0, 0, 0]\naxis = [0, 1, 0]\nradius = 0.1\nstiffness = 1e7\n\
+                   groove_angle = 0.8\nfriction = 0.3\ninertia = 1e-3\nbearing_friction = 0.01\n[ship]\ninput = \"pose_velocity_acceleration\"\n\
+                   [body]\nmass = 2\n";
     let winch = |t: f64| {
         let (s, c) = (1.3 * t).sin_cos();
         let mut inputs = heaving(0.05, 1.5)(t);
@@ -45,6 +48,7 @@ fn cases() -> [Case; 4] {
         Case { name: "P3", scene: string.scene(10, p3), h: 0.01, end: 0.6, inputs: Box::new(|_| Inputs::default()) },
         Case { name: "P4a", scene: HEAVY_WIRE.scene(5, p4), h: 0.1, end: 12.0, inputs: Box::new(heaving(2.5, 6.0)) },
         Case { name: "P4b", scene: HEAVY_WIRE.scene(5, p4), h: 0.02, end: 10.0, inputs: Box::new(heaving(5.0, 4.0)) },
+        Case { name: "over a turning sheave", scene: cord.scene(24, turning), h: 0.002, end: 0.6, inputs: Box::new(heaving(0.05, 1.0)) },
         Case { name: "reeled in water", scene: cord.scene(12, reeled), h: 0.01, end: 2.0, inputs: Box::new(winch) },
     ]
 }

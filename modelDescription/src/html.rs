@@ -123,7 +123,8 @@ Outputs are those of the last communication point. The state can be saved, resto
 const LIMITS: &str = "<h2 id=\"limits\">Limits</h2>
 <ul>
 <li>No torsion, no contact of the cable with itself or with the sea bed, one layer on the drum and no friction
-there.</li>
+there. A step that would bring the cable's far end nearer than an eighth of its radius to a drum with contact is refused:
+all of the cable is reeled in.</li>
 <li>The section is linearly elastic: EA and EI do not change with load. The drag of <code>cd = \"cylinder\"</code> is that of a smooth cylinder for Reynolds
 numbers up to 2&middot;10<sup>5</sup>, of <code>\"sphere\"</code> up to 3&middot;10<sup>5</sup>, and is held constant beyond.</li>
 <li>The water surface is still; waves act through the ship's motion only. The current's profile is horizontal and does not change along x and y; its turbulence is the same everywhere.</li>

@@ -194,7 +194,7 @@ const IMPLIED: Presence = Default(Constant::Flag(true));
 pub static GROUPS: &[Group] = &[
     group("", IMPLIED, false, "The scene"),
     group("cable", Required, false, "The cable's section"),
-    group("mesh", Required, false, "Finite elements: either elements or regions"),
+    group("mesh", Required, false, "Finite elements: elements of equal length, regions, or an error to grade them by"),
     group("mesh.regions", Optional, true, "Stretches of cable with elements of equal length, from the first end; they sum to cable.length"),
     group("fluid", Optional, false, "Water; without it, vacuum"),
     group("fluid.current.noise", Optional, false, "Turbulence of the current, uniform in space: white noise through a Chebyshev-II low-pass, added to profile and inputs; the same for the same seed and time. A static start does not feel it"),
@@ -311,6 +311,8 @@ pub static KEYS: &[Key] = &[
     key(1023, "cable.damping.coefficient", Real(&u::AXIAL_DAMPING, NotNegative), Required, "Coefficient of the gradient-rate damping").when(Is("damping.model", &["gradient_rate"])),
 
     key(1040, "mesh.elements", Integer(1, 100_000), Optional, "Number of elements of equal length"),
+    key(1043, "mesh.error", Real(&u::RATIO, Inside(0.0, 1.0)), Optional, "Relative error of tensions for which elements are chosen: short where the cable lies or will lie on drum and sheaves, longer away from them"),
+    key(1044, "mesh.travel", Real(&u::LENGTH, NotNegative), Optional, "The most that is paid out or reeled in during a run, for mesh.error; two drum diameters if left out").when(Given("error")),
     key(1041, "mesh.regions.length", Real(&u::LENGTH, Positive), Required, "Unstretched length of the region"),
     key(1042, "mesh.regions.elements", Integer(1, 100_000), Required, "Number of elements of the region"),
 
@@ -385,7 +387,7 @@ pub static KEYS: &[Key] = &[
     key(1161, "initial.direction", Vector(&u::DIRECTION), Required, "Direction of the cable down the free rope, inertial frame; any length but zero").when(Is("state", &["released", "straight"])),
     key(1162, "initial.file", Text, Required, "CSV with columns s, x, y, z and optionally tx, ty, tz and vx, vy, vz; path relative to the scene file").when(Is("state", &["shape"])),
 
-    key(1170, "solver.method", Choice(&["rodas4", "tr_bdf2", "esdirk3", "esdirk4"]), text("rodas4"), "Time integrator: rodas4 (Rosenbrock, a new tangent every sub-step), or implicit with kept factors: tr_bdf2 (order 2, cheap at 1 %), esdirk3, esdirk4"),
+    key(1170, "solver.method", Choice(&["rodas4", "tr_bdf2", "esdirk3", "esdirk4", "radau5"]), text("rodas4"), "Time integrator: rodas4 (Rosenbrock, a new tangent every sub-step), or implicit with kept factors: tr_bdf2 (order 2, cheap at 1 %), esdirk3, esdirk4; or radau5 (order 5, slow, an independent reference)"),
     key(1171, "solver.tolerance", Real(&u::RATIO, Inside(0.0, 1.0)), real(1e-3), "Relative accuracy asked of the tension").tunable(),
     key(1172, "solver.step_max", Real(&u::DURATION, Positive), real(0.1), "Greatest sub-step"),
     key(1173, "solver.step_min", Real(&u::DURATION, Positive), real(1e-9), "Smallest sub-step, below which a step has failed"),

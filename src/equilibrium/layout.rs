@@ -183,10 +183,34 @@ impl Way {
         Some((self.rotation * (p - self.first), self.rotation * t))
     }
 
+    /// Arc lengths between which the cable lies on each wheel, and the wheel's radius to the cable's centreline, m.
+    fn wheels(&self) -> impl Iterator<Item = OnWheel> {
+        self.pieces.iter().map(|p| OnWheel { from: p.come, to: p.come + p.wheel.arc(), radius: p.wheel.radius })
+    }
+
     /// Where it ends, relative to the first node, world axes.
     pub fn leaves(&self) -> Vector3<f64> {
         self.rotation * (self.last - self.first)
     }
+}
+
+/// Where the cable lies on a drum or sheave.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OnWheel {
+    /// Arc length at which it comes, m.
+    pub from: f64,
+    /// And goes, m.
+    pub to: f64,
+    /// Radius to the cable's centreline, m.
+    pub radius: f64,
+}
+
+/// Where a cable that leaves the last wheel along `direction` (a world unit vector) lies on drum and sheaves.
+///
+/// # Errors
+/// As [`Way::new`].
+pub fn on_wheels(system: &System, t: f64, direction: &Vector3<f64>) -> Result<Vec<OnWheel>, String> {
+    Ok(Way::new(system, t, direction)?.wheels().collect())
 }
 
 /// Positions relative to the first node and slopes, six per node: along drum and sheaves as far as needed, straight from there along

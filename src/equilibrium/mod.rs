@@ -12,7 +12,7 @@ mod layout;
 mod span;
 
 pub use given::take_shape;
-pub use layout::lay_out;
+pub use layout::{OnWheel, lay_out, on_wheels};
 pub use span::{follow, glide, lay_between, meet};
 
 use crate::integrator::Problem;

@@ -18,6 +18,8 @@ use crate::system::Matrices;
 const SAME_STEP: f64 = 0.02;
 /// A slower rate of convergence asks for a new tangent.
 const SLOW: f64 = 0.1;
+/// Tangents that a try may take where Newton's method stalls.
+const RENEWALS: usize = 3;
 
 /// Work space, and the factors with all that they came from.
 #[derive(Clone, Debug)]
@@ -41,6 +43,8 @@ pub struct Esdirk {
     residual: Vec<f64>,
     change: Vec<f64>,
     error: Vec<f64>,
+    /// So many more tangents may be taken within the try.
+    renewals: usize,
     /// Solves, tangents and factorizations so far.
     counts: [u64; 3],
 }
@@ -64,6 +68,7 @@ impl Esdirk {
             residual: zeros(),
             change: zeros(),
             error: zeros(),
+            renewals: 0,
             counts: [0; 3],
         }
     }
@@ -87,13 +92,29 @@ impl Esdirk {
         Ok(())
     }
 
+    /// The tangent where Newton's method stands in stage `i`, because an older one, or one from too far away, leads nowhere. False if it is
+    /// singular.
+    fn renew<P: Problem>(&mut self, problem: &mut P, i: usize, t: f64, g: f64) -> bool {
+        self.renewals -= 1;
+        let mut at = std::mem::take(&mut self.origin);
+        step(&mut self.stage, &self.base, &self.a[i], g);
+        problem.settle(&self.stage[0], &self.stage[1]);
+        for (at, here) in at.iter_mut().zip([&self.stage[0], &self.stage[1], &self.a[i]]) {
+            at.copy_from_slice(here);
+        }
+        problem.linearize(t, &at[0], &at[1], &at[2], &mut self.matrices, &mut self.residual);
+        self.counts[1] += 1;
+        self.origin = at;
+        self.refactor(g).is_ok()
+    }
+
     /// Stage `i` by Newton's method.
     fn solve_stage<P: Problem>(&mut self, problem: &mut P, i: usize, t: f64, g: f64) -> Outcome {
         let (known, rest) = self.a.split_at_mut(i);
-        let a = &mut rest[0];
-        a.copy_from_slice(&known[i - 1]);
+        rest[0].copy_from_slice(&known[i - 1]);
         let mut progress = Progress::new(self.rate);
         let outcome = loop {
+            let a = &mut self.a[i];
             step(&mut self.stage, &self.base, a, g);
             problem.iterate(progress.count == 0, t, &self.stage[0], &self.stage[1], a, &mut self.residual);
             self.counts[0] += 1;
@@ -102,12 +123,14 @@ impl Esdirk {
             add(a, 1.0, &self.change);
             // The energy norm of the change of (u, w), so that axial waves and stiff contact count by what they pull.
             let size = problem.size_of(g * g * dot(&self.change, &self.residual).abs());
-            if let Some(outcome) = progress.judge(size) {
-                break outcome;
+            match progress.judge(size) {
+                Some(Outcome::Stalled) if self.renewals > 0 && self.renew(problem, i, t, g) => progress = Progress::new(0.0),
+                Some(outcome) => break outcome,
+                None => {}
             }
         };
         self.rate = progress.rate;
-        step(&mut self.stage, &self.base, a, g);
+        step(&mut self.stage, &self.base, &self.a[i], g);
         self.w[i].copy_from_slice(&self.stage[1]);
         problem.settle(&self.stage[0], &self.stage[1]);
         outcome
@@ -155,26 +178,19 @@ impl Integrator for Esdirk {
 
     fn attempt<P: Problem>(&mut self, problem: &mut P, t: f64, h: f64, from: [&[f64]; 3], _: &[f64]) -> Trial {
         let g = self.tableau.gamma * h;
-        let mut fresh = self.g == 0.0 || self.rate > SLOW;
-        loop {
-            if fresh {
-                self.refresh(problem, t, from);
-            }
-            let same = self.g > 0.0 && (g / self.g - 1.0).abs() <= SAME_STEP;
-            if !same && let Err(trial) = self.refactor(g) {
-                return trial;
-            }
-            match self.stages(problem, t, h, from) {
-                Outcome::Converged => break,
-                outcome => {
-                    problem.rewind();
-                    if fresh {
-                        self.g = 0.0;
-                        return if outcome == Outcome::NotFinite { Trial::Error(f64::NAN) } else { Trial::Stalled };
-                    }
-                    fresh = true;
-                }
-            }
+        self.renewals = RENEWALS;
+        if self.g == 0.0 || self.rate > SLOW {
+            self.refresh(problem, t, from);
+        }
+        let same = self.g > 0.0 && (g / self.g - 1.0).abs() <= SAME_STEP;
+        if !same && let Err(trial) = self.refactor(g) {
+            return trial;
+        }
+        let outcome = self.stages(problem, t, h, from);
+        if outcome != Outcome::Converged {
+            problem.rewind();
+            self.g = 0.0;
+            return if outcome == Outcome::NotFinite { Trial::Error(f64::NAN) } else { Trial::Stalled };
         }
         // J⁻¹M takes from the estimate what the method damps anyway (Hosea & Shampine, section 4).
         blend(&mut self.residual, None, h, self.tableau.estimate, &self.a);

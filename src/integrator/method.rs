@@ -1,6 +1,6 @@
 //! The method that a scene asks for.
 
-use super::{ESDIRK3, ESDIRK4, Esdirk, Integrator, Problem, Rodas4, TR_BDF2, Trial};
+use super::{ESDIRK3, ESDIRK4, Esdirk, Integrator, Problem, Radau5, Rodas4, TR_BDF2, Trial};
 use crate::scene;
 
 /// One of the methods, chosen once: no call is virtual.
@@ -10,6 +10,8 @@ pub enum Method {
     Rodas4(Box<Rodas4>),
     /// Implicit, with kept factors.
     Esdirk(Box<Esdirk>),
+    /// Implicit, all stages at once.
+    Radau5(Box<Radau5>),
 }
 
 impl Method {
@@ -21,6 +23,7 @@ impl Method {
             scene::Method::TrBdf2 => esdirk(&TR_BDF2),
             scene::Method::Esdirk3 => esdirk(&ESDIRK3),
             scene::Method::Esdirk4 => esdirk(&ESDIRK4),
+            scene::Method::Radau5 => Self::Radau5(Box::new(Radau5::new(size, at))),
         }
     }
 }
@@ -31,6 +34,7 @@ macro_rules! whichever {
         match $self {
             Method::Rodas4($method) => $call,
             Method::Esdirk($method) => $call,
+            Method::Radau5($method) => $call,
         }
     };
 }

@@ -3,6 +3,7 @@
 mod esdirk;
 mod method;
 mod newton;
+mod radau5;
 mod rodas4;
 mod tableau;
 #[cfg(test)]
@@ -11,6 +12,7 @@ pub mod vectors;
 
 pub use esdirk::Esdirk;
 pub use method::Method;
+pub use radau5::Radau5;
 pub use rodas4::Rodas4;
 pub use tableau::{ESDIRK3, ESDIRK4, TR_BDF2, Tableau};
 
@@ -34,6 +36,9 @@ pub trait Problem {
     /// f = F(t, u, w) − M(u) a at an iterate of Newton's method in a stage, `first` or later, whose tangent is that of the last `linearize`.
     /// The problem's fast unknowns are iterates too.
     fn iterate(&mut self, first: bool, t: f64, u: &[f64], w: &[f64], a: &[f64], f: &mut [f64]);
+
+    /// A step ends at (u, w) whose stages knew no fast unknowns: these are what the state makes them.
+    fn adopt(&mut self, u: &[f64], w: &[f64]);
 
     /// Newton's method has ended at (u, w); the next stage begins with the fast unknowns as they are there.
     fn settle(&mut self, u: &[f64], w: &[f64]);

@@ -3,7 +3,7 @@
 
 /// What is left may be this share of the tolerable error.
 const KAPPA: f64 = 0.05;
-/// Iterations of a stage.
+/// Iterations of a stage, unless more are allowed.
 const MOST: usize = 8;
 /// A method that converges slower does not converge.
 const HOPELESS: f64 = 0.9;
@@ -26,6 +26,8 @@ pub struct Progress {
     pub count: usize,
     /// Rate of convergence: of this stage, or guessed from those before; 0 is unknown.
     pub rate: f64,
+    /// So many may be done.
+    most: usize,
     last: f64,
 }
 
@@ -33,7 +35,12 @@ impl Progress {
     /// A stage begins; earlier ones converged at `rate`, 0 if there were none with these factors.
     pub fn new(rate: f64) -> Self {
         // An old rate is worth less than a new one.
-        Self { count: 0, rate: rate.powf(0.8), last: f64::INFINITY }
+        Self { count: 0, rate: rate.powf(0.8), most: MOST, last: f64::INFINITY }
+    }
+
+    /// With another limit.
+    pub fn of_most(self, most: usize) -> Self {
+        Self { most, ..self }
     }
 
     /// An iteration has changed the stage by `size` tolerable errors.
@@ -51,7 +58,7 @@ impl Progress {
         if size < 1e-3 * KAPPA {
             return Some(Outcome::Converged);
         }
-        if self.count > 1 && self.rate > HOPELESS || self.count == MOST {
+        if self.count > 1 && self.rate > HOPELESS || self.count == self.most {
             return Some(Outcome::Stalled);
         }
         (self.rate > 0.0 && self.rate < 1.0 && size * self.rate / (1.0 - self.rate) < KAPPA).then_some(Outcome::Converged)

@@ -93,7 +93,7 @@ pub static ESDIRK4: Tableau = Tableau {
     ],
     order: 4,
     estimate_order: 4,
-    strictness: 0.3,
+    strictness: 0.1,
 };
 const E4_51: f64 = (-13_796.0 - 54_539.0 * ROOT) / 125_000.0;
 const E4_61: f64 = (1181.0 - 987.0 * ROOT) / 13_782.0;

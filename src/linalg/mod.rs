@@ -2,8 +2,10 @@
 
 mod block_tridiagonal;
 mod bordered;
+mod complex;
 mod patches;
 
 pub use block_tridiagonal::{BLOCK, Block, BlockTridiagonal, SingularBlock};
 pub use bordered::Bordered;
+pub use complex::ComplexBordered;
 pub use patches::Patches;

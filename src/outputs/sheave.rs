@@ -4,7 +4,7 @@ use super::SheaveOutputs;
 use super::observe::{span_tension, span_tension_beside, tangent_at};
 use crate::contact::surface::{Face, Surface};
 use crate::math::lanes::{Lanes, Vec3, axpy, dot, mat_vec};
-use crate::system::contact::{SurfaceFrame, near, touching};
+use crate::system::contact::{SurfaceFrame, ball, near, touching};
 use crate::system::{Environment, System, gather};
 use nalgebra::Vector3;
 
@@ -157,12 +157,25 @@ pub fn sheave(
     out.line_load_min = if least.is_finite() { least } else { 0.0 };
 }
 
+/// Whether an element can come so near to the surface's centre.
+fn within(frame: &SurfaceFrame, slots: &[Vec3<f64>; 4], l: f64, reach: f64) -> bool {
+    let (middle, radius) = ball(slots, l);
+    let at = frame.place(&middle);
+    dot(&at, &at) < (reach + radius).powi(2)
+}
+
 /// Whether some of the cable lies on the rim or beside the groove.
 fn climbed_out(system: &System, surface: &Surface, frame: &SurfaceFrame, u: &[f64]) -> bool {
     let Some(groove) = surface.groove.filter(|g| g.depth.is_finite()) else { return false };
     let rim = groove.half_width(groove.depth);
+    // Farther from the centre than this no point counts.
+    let reach = 2.0 * surface.radius + groove.depth + groove.diameter + rim;
     system.chain.lengths.iter().enumerate().any(|(e, &l)| {
-        let (_, curve) = frame.shape(&gather(u, e), l);
+        let slots = gather(u, e);
+        if !within(frame, &slots, l, reach) {
+            return false;
+        }
+        let (_, curve) = frame.shape(&slots, l);
         (0..=SAMPLES).any(|k| {
             let s = curve.at(k as f64 / SAMPLES as f64);
             let h = s[1].hypot(s[2]) - surface.radius;

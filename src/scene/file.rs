@@ -92,8 +92,12 @@ impl SceneFile {
             }
             _ => vec![],
         };
-        let scene = root.scene(points);
+        let (error, travel) = (root.mesh.error, root.mesh.travel);
+        let mut scene = root.scene(points);
         super::wheels::check(&scene, &mut problems);
+        if let Some(error) = error {
+            scene.elements = crate::mesh::graded(&scene, error, travel);
+        }
         problems.into_result(&self.source, scene)
     }
 }
@@ -170,6 +174,8 @@ struct CableTable {
 #[derive(Deserialize)]
 struct MeshTable {
     elements: Option<usize>,
+    error: Option<f64>,
+    travel: Option<f64>,
     #[serde(default)]
     regions: Vec<Region>,
 }

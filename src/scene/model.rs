@@ -366,4 +366,6 @@ pub enum Method {
     Esdirk3,
     /// ESDIRK4(3)6L[2]SA, the same.
     Esdirk4,
+    /// Radau IIA, order 5, L-stable, stiffly accurate (Hairer & Wanner): the reference.
+    Radau5,
 }

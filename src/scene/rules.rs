@@ -85,15 +85,14 @@ fn stiffness(tree: &Table, problems: &mut Problems) {
 }
 
 fn mesh(tree: &Table, problems: &mut Problems) {
-    let Some(regions) = get(tree, "mesh.regions") else {
-        if has(tree, "mesh") && !has(tree, "mesh.elements") {
-            problems.add("mesh.elements", "missing; expected a whole number >= 1, or mesh.regions instead");
-        }
-        return;
-    };
-    if has(tree, "mesh.elements") {
-        problems.add("mesh.regions", "found beside mesh.elements; expected one of the two");
+    let given: Vec<&str> = ["mesh.elements", "mesh.regions", "mesh.error"].into_iter().filter(|key| has(tree, key)).collect();
+    if given.is_empty() && has(tree, "mesh") {
+        problems.add("mesh.elements", "missing; expected a whole number >= 1, or mesh.regions or mesh.error instead");
     }
+    for key in given.iter().skip(1) {
+        problems.add(*key, format!("found beside {}; expected one of the two", given[0]));
+    }
+    let Some(regions) = get(tree, "mesh.regions") else { return };
     let lengths = regions.as_array().map(|a| a.iter().map(|r| r.get("length").and_then(Value::as_float)));
     let sum: Option<f64> = lengths.and_then(Iterator::sum);
     if let (Some(sum), Some(length)) = (sum, real(tree, "cable.length"))

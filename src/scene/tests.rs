@@ -184,7 +184,7 @@ fn exact_problems_name_key_value_and_expectation() {
         ),
         ("elements = 4", "elements = 4.0", "s.toml: mesh.elements: found 4.0; expected a whole number from 1 to 100000"),
         ("elements = 4", "elements = 0", "s.toml: mesh.elements: found 0; expected a whole number from 1 to 100000"),
-        ("elements = 4", "", "s.toml: mesh.elements: missing; expected a whole number >= 1, or mesh.regions instead"),
+        ("elements = 4", "", "s.toml: mesh.elements: missing; expected a whole number >= 1, or mesh.regions or mesh.error instead"),
         (
             "elements = 4",
             "regions = [{ length = 4, elements = 1 }]",
@@ -195,6 +195,8 @@ fn exact_problems_name_key_value_and_expectation() {
             "regions = [{ length = 10 }]",
             "s.toml: mesh.regions[1].elements: missing; expected a whole number from 1 to 100000",
         ),
+        ("elements = 4", "elements = 4\nerror = 1e-2", "s.toml: mesh.error: found beside mesh.elements; expected one of the two"),
+        ("elements = 4", "error = 2", "s.toml: mesh.error: found 2.0; expected a number between 0 and 1, both excluded"),
         ("elements = 4", "regions = 3", "s.toml: mesh.regions: found 3; expected an array of tables [[mesh.regions]]"),
         (
             "name = \"small\"",

@@ -1,6 +1,6 @@
 //! What is prescribed from outside: laid over a step, kept at its begin, taken back.
 
-use super::{Inputs, Simulation};
+use super::{Channel, Inputs, Simulation};
 use crate::math::interpolation::Quintic;
 use crate::ship::ShipDrive;
 use crate::system::{FirstEnd, Ramp};
@@ -17,12 +17,21 @@ pub(super) struct Drives {
     body_force: [Ramp; 3],
 }
 
+/// Whether a prescribed quantity goes on as it was, but for what a ledger would not notice.
+fn same(old: f64, new: f64, scale: f64) -> bool {
+    (new - old).abs() <= 1e-6 * scale
+}
+
 impl Simulation {
     /// Lays the paths of everything prescribed over the next `h` seconds.
     pub(super) fn drive(&mut self, t: f64, h: f64, inputs: &Inputs) {
         self.system.ship.advance(t, h, &inputs.ship);
         self.compensate(t, h);
         let system = &mut self.system;
+        let continued = |old: &[Ramp], new: &[Channel]| {
+            old.iter().zip(new).all(|(old, new)| same(old.value + old.rate * (t - system.begin), new.value, new.value.abs()))
+        };
+        let continued = continued(&system.current, &inputs.current) && continued(&system.body_force, &inputs.body_force);
         system.begin = t;
         system.current = std::array::from_fn(|i| Ramp::from(&inputs.current[i]));
         system.body_force = std::array::from_fn(|i| Ramp::from(&inputs.body_force[i]));
@@ -46,6 +55,8 @@ impl Simulation {
                 a[c] -= base[c] - self.state.base[c];
             }
         }
+        let gravity = self.scene.gravity;
+        self.work.jumped = !continued || base.iter().zip(&self.state.base).any(|(new, old)| !same(*old, *new, gravity + new.abs()));
         self.state.base = base;
     }
 

@@ -8,7 +8,8 @@ use super::{System, Tally};
 use crate::cable::shape;
 use crate::hydro::line::{Flow, LineInWater, LineLoads, LinePoint, LinePoints};
 use crate::hydro::surface::line_share;
-use crate::math::lanes::{Kernel, Mat3, dot, widest};
+use crate::math::jet::Jet;
+use crate::math::lanes::{Kernel, Mat3, Vec3, dot, widest};
 use crate::math::quadrature::GAUSS3;
 
 /// Points side by side.
@@ -36,7 +37,7 @@ impl<const TANGENT: bool> Kernel for Loads<'_, TANGENT> {
 
 impl Wet<'_> {
     /// Adds what the points feel to forces and matrices.
-    fn flush<const TANGENT: bool>(&mut self, forces: &mut [[f64; 12]], tally: &mut Tally, m: &mut Matrices) {
+    fn flush<const TANGENT: bool>(&mut self, base: &[Jet; 3], forces: &mut [[f64; 12]], tally: &mut Tally, m: &mut Matrices) {
         if self.count == 0 {
             return;
         }
@@ -47,7 +48,10 @@ impl Wet<'_> {
             let (share, dshare) = line_share(at.z, water.waterline, water.diameter);
             let s = wl * share;
             point.push(&load.f.map(|x| s * x), forces);
-            let across = dot(&point.w, &point.w) - dot(&point.w, &point.p).powi(2) / dot(&point.p, &point.p);
+            let across = |x: &Vec3<f64>| dot(&point.w, x) - dot(&point.w, &point.p) * dot(x, &point.p) / dot(&point.p, &point.p);
+            let relative = std::array::from_fn(|c| at.a[c] - base[c].0[2]);
+            tally.accelerate(s * water.added_mass * across(&relative));
+            let across = across(&point.w);
             tally.kinetic += s * 0.5 * water.added_mass * across;
             tally.turning += s * load.turning + wl * dshare * at.v[2] * 0.5 * water.added_mass * across;
             if TANGENT {
@@ -92,7 +96,7 @@ impl System {
                         w: point.w,
                     };
                     if wet.count == LANES {
-                        wet.flush::<TANGENT>(forces, tally, m);
+                        wet.flush::<TANGENT>(&env.base, forces, tally, m);
                     }
                     wet.points.set(wet.count, &at);
                     wet.at[wet.count] = Some((point, (to - from) * l * weight));
@@ -100,6 +104,6 @@ impl System {
                 }
             });
         }
-        wet.flush::<TANGENT>(forces, tally, m);
+        wet.flush::<TANGENT>(&env.base, forces, tally, m);
     }
 }

@@ -82,6 +82,8 @@ impl System {
             f[at + 6 + c] -= a.map_or(0.0, |a| a[at + 6 + c]); // the slots without use: M = 1, no force
             f[at + 9 + c] += x[c] - n[c] * nx / n2 - spin * (an[c] + radial * n[c]);
         }
+        let across: Vec3<f64> = std::array::from_fn(|c| ap[c] - n[c] * dot(&n, &ap) / n2);
+        self.tally.accelerate(mass * dot(&vp, &ap) + arm * (dot(&vp, &an) + dot(&v, &across)) + spin * dot(&v, &an));
         self.tally.kinetic += 0.5 * mass * dot(&vp, &vp) + arm * dot(&vp, &v) + 0.5 * spin * dot(&v, &v);
         if TANGENT {
             let mut along = [[0.0; 3]; 3];

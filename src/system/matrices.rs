@@ -1,8 +1,9 @@
 //! M, D, K of the linearized system and how contributions enter them.
 
 use super::elements::{Each, ElementTangents};
-use crate::linalg::{BlockTridiagonal, Bordered, Patches};
+use crate::linalg::{BlockTridiagonal, Bordered, ComplexBordered, Patches};
 use crate::math::lanes::Mat3;
+use nalgebra::Complex;
 
 /// Derivatives of G = F(t, u, w) − M(u) a: M = −∂G/∂a, D = −∂G/∂w, K = −∂G/∂u; each the elements' share and what else there is.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -109,6 +110,21 @@ impl Matrices {
             for i in 0..column.len() {
                 column[i] = g * coupling.damping_column[i];
                 row[i] = g * (coupling.damping_row[i] + g * coupling.stiffness_row[i]);
+            }
+        }
+    }
+
+    /// The same for a complex g, of this real and imaginary part.
+    pub fn combine_complex(&self, g: [f64; 2], into: &mut ComplexBordered) {
+        let g = Complex::new(g[0], g[1]);
+        let square = g * g;
+        self.sum([1.0, g.re, square.re], &mut into.parts[0]);
+        self.sum([0.0, g.im, square.im], &mut into.parts[1]);
+        for (k, coupling) in self.couplings.iter().enumerate() {
+            let (column, row) = into.border(k);
+            for i in 0..column.len() {
+                column[i] = g * coupling.damping_column[i];
+                row[i] = g * (g * coupling.stiffness_row[i] + coupling.damping_row[i]);
             }
         }
     }

@@ -373,7 +373,9 @@ impl System {
             self.lump.mass * (env.gravity[c] - acc) + env.body_force[c]
         });
         let wn = [w[at], w[at + 1], w[at + 2]];
+        let an = a.map_or([0.0; 3], |a| [a[at], a[at + 1], a[at + 2]]);
         self.tally.kinetic += 0.5 * self.lump.mass * dot(&wn, &wn);
+        self.tally.accelerate(self.lump.mass * dot(&wn, &an));
         if TANGENT {
             for c in 0..3 {
                 m.mass.add(n, n, c, c, self.lump.mass);
@@ -389,6 +391,7 @@ impl System {
             }
             let load = lump.load(z, &v, &acc, &vf, &dvf, &env.flow.acceleration);
             self.tally.kinetic += 0.5 * load.mass * dot(&wn, &wn);
+            self.tally.accelerate(load.mass * dot(&wn, &an));
             self.tally.turning += 0.5 * load.mass_dz * v[2] * dot(&wn, &wn);
             for c in 0..3 {
                 force[c] += load.f[c];
@@ -453,6 +456,7 @@ impl System {
         self.evaluate::<true>(&env, u, w, varies.then_some(a), if self.keeps_axial { Axially::Begin } else { Axially::Law }, f, m);
         if varies {
             m.multiply_add([Some((1.0, a)), None, None], f);
+            self.tally.inertial = [0.0; 2];
         }
         // Positions of the first node and of a fixed far end.
         m.pin(0);
@@ -546,6 +550,10 @@ impl Problem for System {
 
     fn iterate(&mut self, first: bool, t: f64, u: &[f64], w: &[f64], a: &[f64], f: &mut [f64]) {
         self.force_at(Axially::Iterate { first }, t, u, w, Some(a), f);
+    }
+
+    fn adopt(&mut self, u: &[f64], w: &[f64]) {
+        self.chain.adopt(u, w, &mut self.axial);
     }
 
     fn settle(&mut self, u: &[f64], w: &[f64]) {

@@ -89,6 +89,7 @@ impl System {
             let surface = &self.surfaces[s.surface];
             f[s.at] += moment - self.surface_loads[s.surface].moment[0] - s.inertia * turning_of_ship(&env.frame, &surface.basis[0]);
             self.tally.kinetic += 0.5 * s.inertia * spin * spin;
+            self.tally.accelerate(a.map_or(0.0, |a| s.inertia * spin * a[s.at]));
             if TANGENT {
                 m.damping.add(s.at / 6, s.at / 6, s.at % 6, s.at % 6, -slope);
             }

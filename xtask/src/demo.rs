@@ -8,6 +8,7 @@ use crate::host::{Fmu, Instance, Variable};
 use crate::package::{package, target_folder};
 use crate::results::{publish, save, shown};
 use crate::ship_motion::{HEADER, Motion, Options, generate};
+use crate::voyage::{self, Record, Scene};
 use fairlead::variables::VERSION;
 use heave::SimplifiedSheave;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -114,6 +115,7 @@ struct Run {
     /// Some of the FMU's parameters.
     drum: Drum,
     waterline: f64,
+    scene: Scene,
 }
 
 /// Drives the FMU as a host with a winch controller would: per step, ship motion and set-point in, one step, outputs out.
@@ -141,6 +143,7 @@ fn simulate(fmu: &Fmu, motion: &Motion, winch: Winch) -> Result<Run> {
         clockwise: controller.turn * instance.get("winch.axis[2]")? > 0.0,
     };
     let waterline = instance.get("fluid.waterline")?;
+    let scene = Scene::of(fmu, &instance)?;
     let mut outputs = Outputs::new(fmu);
     outputs.record(&instance)?;
     let start = clock.elapsed();
@@ -172,7 +175,7 @@ fn simulate(fmu: &Fmu, motion: &Motion, winch: Winch) -> Result<Run> {
     for (i, name) in COMMAND.iter().enumerate() {
         columns.insert((*name).to_owned(), (0..times.len()).map(|row| setpoint(row)[i]).collect());
     }
-    Ok(Run { times: times.clone(), columns, start, calls, drum, waterline })
+    Ok(Run { times: times.clone(), columns, start, calls, drum, waterline, scene })
 }
 
 /// Some Real inputs, set together.
@@ -275,9 +278,17 @@ fn data(fmu: &Fmu, sea: &Options, path: &Path, compensated: Run, held: &Run) -> 
         ("Wall-clock time to the first step", format!("{:.3} s (instantiation and static equilibrium)", compensated.start.as_secs_f64())),
         ("Program", format!("fairlead {VERSION}{}", compiler().map_or_else(String::new, |c| format!(", {c}")))),
     ];
-    Ok(DemoData {
+    let record = Record {
+        title: description.model_name.clone(),
         times: compensated.times,
         columns: compensated.columns,
+        scene: compensated.scene,
+        failure: None,
+    };
+    Ok(DemoData {
+        animation: voyage::animation(&record),
+        times: record.times,
+        columns: record.columns,
         held: held.columns.clone(),
         drum: Some(compensated.drum),
         waterline: Some(compensated.waterline),

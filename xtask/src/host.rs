@@ -52,6 +52,11 @@ impl Fmu {
         Ok(Self { description: Arc::new(description), api: Arc::new(api), folder })
     }
 
+    /// The text of a file in the resources folder, if there is one.
+    pub fn resource(&self, name: &str) -> Option<String> {
+        fs::read_to_string(self.folder.path().join("resources").join(name)).ok()
+    }
+
     /// A new instance.
     ///
     /// # Errors

@@ -25,7 +25,10 @@ figure img{display:block;max-width:100%;height:auto;margin:auto}
 .wide{overflow-x:auto}
 .wide table{font-size:.84rem;min-width:100%}
 .wide th,.wide td{padding:.3rem .6rem}
+.wide th.number{white-space:normal}
 .figures td:first-child{min-width:22rem}
+.gallery{display:grid;grid-template-columns:repeat(auto-fill,minmax(30rem,1fr));gap:.8rem;margin:1rem 0}
+.gallery figure{margin:0}
 .roomy p{max-width:58rem}
 .roomy figcaption{max-width:58rem;text-align:center;margin:auto}
 td small{display:block;color:#5b6773;font-size:.92em;line-height:1.4}
@@ -137,6 +140,14 @@ impl Page {
     pub fn image(&mut self, file: &str, title: &str, caption: &str) -> &mut Page {
         let (file, title, caption) = (escaped(file), escaped(title), escaped(caption));
         self.push(&format!("<figure><img src=\"{file}\" alt=\"{title}\" loading=\"lazy\"><figcaption>{caption}</figcaption></figure>"))
+    }
+
+    /// Small figures in files beside the page, side by side: (file, title).
+    pub fn gallery(&mut self, images: &[(String, String)]) -> &mut Page {
+        let image = |(file, title): &(String, String)| {
+            format!("<figure><img src=\"{}\" alt=\"{}\" loading=\"lazy\"></figure>", escaped(file), escaped(title))
+        };
+        self.push(&format!("<div class=\"gallery\">{}</div>", images.iter().map(image).collect::<String>()))
     }
 
     /// A link to a file beside the page.

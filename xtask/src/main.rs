@@ -7,6 +7,7 @@ mod demo;
 mod demo_report;
 mod dist;
 mod error;
+mod example;
 mod host;
 mod html_report;
 mod library;
@@ -26,6 +27,7 @@ mod ship_motion;
 mod test;
 mod toolchain;
 mod validate;
+mod voyage;
 mod xml_tree;
 
 use clap::{Parser, Subcommand};
@@ -46,6 +48,8 @@ enum Command {
     Demo(demo::Args),
     /// Gather the built-in scenes' FMUs with all that goes with them in target/dist
     Dist(dist::Args),
+    /// Run an example in Python of fmu-tests/examples
+    Example(example::Args),
     /// Pack a scene as target/fmu/NAME.fmu
     Package(package::Args),
     /// Hold packed FMUs against closed forms, measurements and other programs; writes fmu-tests/report
@@ -76,6 +80,7 @@ fn main() -> ExitCode {
         Command::Bench(args) => report::run_bench(args),
         Command::Demo(args) => demo::run(args),
         Command::Dist(args) => dist::run(args),
+        Command::Example(args) => example::run(args),
         Command::Package(args) => package::run(args),
         Command::Report(args) => report::run(args),
         Command::Run(args) => run::run(args),

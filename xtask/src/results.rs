@@ -1,12 +1,26 @@
 //! Folders of results that commands write: whole or not at all.
 
 use crate::error::{Result, at};
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 /// Writes a text file.
 pub fn save(path: &Path, text: &str) -> Result<()> {
     fs::write(path, text).map_err(|e| at(path, format!("cannot be written: {e}")))
+}
+
+/// Writes a text file that takes its name, and the place of what had it, only when it is whole.
+pub fn replace(path: &Path, text: &str) -> Result<()> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let failed = |e: std::io::Error| at(path, format!("cannot be written: {e}"));
+    let mut builder = tempfile::Builder::new();
+    // Temporary files are private, results are not.
+    #[cfg(unix)]
+    let builder = builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut file = builder.prefix(".making-").tempfile_in(folder).map_err(failed)?;
+    file.write_all(text.as_bytes()).map_err(failed)?;
+    file.persist(path).map(drop).map_err(|e| failed(e.error))
 }
 
 /// Fills a new folder beside `folder` and puts it in its place when it is whole. What was there before is gone only then.

@@ -3,8 +3,10 @@
 use crate::error::{Failure, at};
 use crate::host::{Description, Fmu, Instance, Variable};
 use crate::series::Series;
+use crate::voyage::{self, POSE, Record, Scene};
 use indicatif::{ProgressBar, ProgressStyle};
 use model_description::Kind;
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::fs;
 use std::io::{BufWriter, Write};
@@ -31,6 +33,9 @@ pub struct Args {
     /// A parameter or an input's start value; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<String>,
+    /// A folder for a page of loads and detachments, index.html, and animation.html
+    #[arg(long, value_name = "FOLDER")]
+    page: Option<PathBuf>,
 }
 
 /// Runs the command.
@@ -44,6 +49,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let plan = Plan::new(&args, description, inputs.as_ref())?;
     let output = args.output.unwrap_or_else(|| PathBuf::from(format!("target/run/{}.csv", description.identifier)));
 
+    // Before the run, so that a folder that cannot be made costs no run.
+    args.page.iter().try_for_each(|folder| fs::create_dir_all(folder).map_err(|e| at(folder, format!("cannot be made: {e}"))))?;
+
     let instance = fmu.instantiate(&description.model_name)?;
     for assignment in &args.set {
         let (name, value) =
@@ -56,18 +64,69 @@ pub fn run(args: Args) -> Result<(), Failure> {
     instance.exit_initialization()?;
 
     let mut table = OutputTable::create(&output, description)?;
-    match drive(&instance, &plan, inputs.as_ref(), &mut table) {
+    if args.page.is_some() {
+        table.record = Some(Recorder::new(&instance, inputs.as_ref())?);
+    }
+    let outcome = drive(&instance, &plan, inputs.as_ref(), &mut table);
+    let page = args.page.zip(table.record.take());
+    let failure = outcome.as_ref().err().map(ToString::to_string);
+    let written = match &outcome {
         Ok(()) => {
             instance.terminate()?;
-            table.finish(&output)?;
-            println!("{}", output.display());
-            Ok(())
+            output
         }
-        Err(failure) => {
-            let partial = output.with_extension("partial.csv");
-            table.finish(&partial)?;
-            Err(Failure(format!("{failure}\nresults up to there are in {}", partial.display())))
+        Err(_) => output.with_extension("partial.csv"),
+    };
+    let names: Vec<_> = table.variables.iter().map(|variable| variable.name.clone()).collect();
+    table.finish(&written)?;
+    let mut pages = None;
+    if let Some((folder, recorder)) = page {
+        let scene = Scene::of(&fmu, &instance)?;
+        voyage::write(&recorder.record(&description.model_name, &names, scene, failure), &folder)?;
+        pages = Some(folder.join("index.html"));
+    }
+    let shown: Vec<_> = [Some(written), pages].into_iter().flatten().map(|path| path.display().to_string()).collect();
+    outcome.map_err(|failure| Failure(format!("{failure}\nresults up to there are in {}", shown.join(" and "))))?;
+    println!("{}", shown.join("\n"));
+    Ok(())
+}
+
+/// The rows of a run, kept for its page.
+struct Recorder {
+    /// The pose at the start, for what the inputs do not give.
+    pose: [f64; 6],
+    /// Columns of the inputs.
+    columns: [Option<usize>; 6],
+    times: Vec<f64>,
+    poses: Vec<[f64; 6]>,
+    rows: Vec<Vec<f64>>,
+}
+
+impl Recorder {
+    fn new(instance: &Instance, inputs: Option<&Inputs>) -> Result<Self, Failure> {
+        let (mut pose, mut columns) = ([0.0; 6], [None; 6]);
+        for (k, name) in POSE.into_iter().enumerate() {
+            if let Ok(variable) = instance.description.variable(name) {
+                pose[k] = instance.read(variable)?;
+                columns[k] = inputs.and_then(|inputs| inputs.series.names.iter().position(|column| column == name));
+            }
         }
+        Ok(Self { pose, columns, times: Vec::new(), poses: Vec::new(), rows: Vec::new() })
+    }
+
+    /// A row of outputs; the ship is where the inputs say that it is then, not where it was when the step began.
+    fn row(&mut self, time: f64, inputs: Option<&Inputs>, row: Vec<f64>) {
+        let now = |k: usize| self.columns[k].zip(inputs).map_or(self.pose[k], |(column, inputs)| inputs.series.at(column, time));
+        self.poses.push(std::array::from_fn(now));
+        self.times.push(time);
+        self.rows.push(row);
+    }
+
+    fn record(self, title: &str, names: &[String], scene: Scene, failure: Option<String>) -> Record {
+        let outputs = names.iter().enumerate().map(|(k, name)| (name.clone(), self.rows.iter().map(|row| row[k]).collect()));
+        let poses = POSE.into_iter().enumerate().map(|(k, name)| (name.to_owned(), self.poses.iter().map(|pose| pose[k]).collect()));
+        let columns: BTreeMap<_, _> = outputs.chain(poses).collect();
+        Record { title: title.to_owned(), times: self.times, columns, scene, failure }
     }
 }
 
@@ -169,12 +228,12 @@ fn drive(instance: &Instance, plan: &Plan, inputs: Option<&Inputs>, table: &mut 
     if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left") {
         progress.set_style(style);
     }
-    table.row(instance, plan.start)?;
+    table.row(instance, plan.start, inputs)?;
     for k in 0..plan.steps() {
         let (time, next) = (plan.point(k), plan.point(k + 1));
         inputs.iter().try_for_each(|inputs| inputs.send(instance, time))?;
         instance.do_step(time, next - time).map_err(|e| Failure(format!("step from t = {time} s to {next} s: {e}")))?;
-        table.row(instance, next)?;
+        table.row(instance, next, inputs)?;
         progress.set_message(format!("t = {next:.2} s"));
         progress.inc(1);
     }
@@ -186,6 +245,8 @@ fn drive(instance: &Instance, plan: &Plan, inputs: Option<&Inputs>, table: &mut 
 struct OutputTable {
     file: BufWriter<NamedTempFile>,
     variables: Vec<Variable>,
+    /// Takes the rows too, where a page is wanted.
+    record: Option<Recorder>,
 }
 
 impl OutputTable {
@@ -201,19 +262,20 @@ impl OutputTable {
         let file = builder.prefix(&prefix).tempfile_in(folder).map_err(|e| at(folder, e))?;
         let numbers = |variable: &&Variable| variable.kind != Kind::String;
         let variables: Vec<_> = description.with_causality("output").filter(numbers).cloned().collect();
-        let mut table = Self { file: BufWriter::new(file), variables };
+        let mut table = Self { file: BufWriter::new(file), variables, record: None };
         let names: Vec<_> = table.variables.iter().map(|variable| variable.name.as_str()).collect();
         let header = format!("time,{}", names.join(","));
         table.line(&header)?;
         Ok(table)
     }
 
-    fn row(&mut self, instance: &Instance, time: f64) -> Result<(), Failure> {
-        let mut row = time.to_string();
-        for variable in &self.variables {
-            row.push_str(&format!(",{}", instance.read(variable)?));
-        }
-        self.line(&row)
+    fn row(&mut self, instance: &Instance, time: f64, inputs: Option<&Inputs>) -> Result<(), Failure> {
+        let values = self.variables.iter().map(|variable| instance.read(variable)).collect::<Result<Vec<_>, _>>()?;
+        let mut line = time.to_string();
+        values.iter().for_each(|value| line.push_str(&format!(",{value}")));
+        self.line(&line)?;
+        self.record.iter_mut().for_each(|record| record.row(time, inputs, values.clone()));
+        Ok(())
     }
 
     fn line(&mut self, line: &str) -> Result<(), Failure> {

@@ -65,6 +65,11 @@ impl SurfaceFrame {
         Self { rotation, base, base_velocity, turn, frozen }
     }
 
+    /// A point relative to the first node, world axes, in the surface's axes.
+    pub fn place(&self, point: &Vec3<f64>) -> Vec3<f64> {
+        axpy(&mat_vec(&self.rotation, point), 1.0, &self.base)
+    }
+
     /// An element's shape from its slots (relative to the first node, world axes).
     #[inline(always)]
     pub fn shape(&self, u: &[Vec3<f64>; 4], l: f64) -> ([Vec3<f64>; 4], Cubic) {
@@ -87,9 +92,9 @@ impl SurfaceFrame {
     }
 }
 
-/// Whether an element can touch the surface: the gaps are 1-Lipschitz, so a ball around its Bézier polygon decides.
+/// Centre and radius of a ball around an element's Bézier polygon, and so around the element.
 #[inline]
-pub fn near(surface: &Surface, frame: &SurfaceFrame, u: &[Vec3<f64>; 4], l: f64) -> bool {
+pub fn ball(u: &[Vec3<f64>; 4], l: f64) -> (Vec3<f64>, f64) {
     let third = l / 3.0;
     let middle: Vec3<f64> = std::array::from_fn(|c| 0.5 * (u[0][c] + u[2][c]));
     let reach = [u[0], axpy(&u[0], third, &u[1]), axpy(&u[2], -third, &u[3])]
@@ -97,7 +102,14 @@ pub fn near(surface: &Surface, frame: &SurfaceFrame, u: &[Vec3<f64>; 4], l: f64)
         .map(|p| (0..3).map(|c| (p[c] - middle[c]).powi(2)).sum::<f64>())
         .fold(0.0, f64::max)
         .sqrt();
-    surface.within(&axpy(&mat_vec(&frame.rotation, &middle), 1.0, &frame.base), reach)
+    (middle, reach)
+}
+
+/// Whether an element can touch the surface: the gaps are 1-Lipschitz, so a ball around it decides.
+#[inline]
+pub fn near(surface: &Surface, frame: &SurfaceFrame, u: &[Vec3<f64>; 4], l: f64) -> bool {
+    let (middle, reach) = ball(u, l);
+    surface.within(&frame.place(&middle), reach)
 }
 
 /// Where in element `e` the search begins.

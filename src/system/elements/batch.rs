@@ -68,6 +68,7 @@ pub struct Batch {
     pub power: Row,
     pub kinetic: Row,
     pub turning: Row,
+    pub inertial: Row,
 }
 
 /// What the tangent needs of a Gauss point, of elements side by side.

@@ -30,6 +30,16 @@ pub struct Tally {
     pub kinetic: f64,
     /// ½ wᵀ Ṁ w, W.
     pub turning: f64,
+    /// wᵀ M a of the accelerations that were given, and the sum of its sizes element by element, W.
+    pub inertial: [f64; 2],
+}
+
+impl Tally {
+    /// Adds `power`, W, to wᵀ M a.
+    pub fn accelerate(&mut self, power: f64) {
+        self.inertial[0] += power;
+        self.inertial[1] += power.abs();
+    }
 }
 
 /// How much of an element is under water.
@@ -222,6 +232,7 @@ impl Chain {
                 tally.elastic_power += batch.power.0[l];
                 tally.turning += batch.turning.0[l];
                 tally.kinetic += batch.kinetic.0[l];
+                tally.accelerate(batch.inertial.0[l]);
                 let out = &mut forces[first + l];
                 for i in 0..4 {
                     out[3 * i..3 * i + 3].copy_from_slice(&lane(&batch.f[i], l));
@@ -235,6 +246,11 @@ impl Chain {
     pub fn accept(&self, u: &[f64], w: &[f64], weights: &[f64], axial: &mut [Axial]) {
         axial.iter_mut().flatten().for_each(|a| a.enter(weights));
         self.at_stations(u, w, axial, |axial, l, strains| axial.end(l, &self.section.resistance::<false>(strains), strains));
+    }
+
+    /// A step that knew nothing of the axial unknowns ends at (u, w).
+    pub fn adopt(&self, u: &[f64], w: &[f64], axial: &mut [Axial]) {
+        self.at_stations(u, w, axial, |axial, l, strains| axial.now.0[l] = self.section.resistance::<false>(strains).axial);
     }
 
     /// Newton's method has ended at (u, w).
@@ -283,7 +299,7 @@ impl Chain {
             batch.wet.0[l] = if high <= full { 1.0 } else { 0.0 };
         }
         batch.f = [[Row::ZERO; 3]; 4];
-        for sum in [&mut batch.elastic, &mut batch.power, &mut batch.kinetic, &mut batch.turning] {
+        for sum in [&mut batch.elastic, &mut batch.power, &mut batch.kinetic, &mut batch.turning, &mut batch.inertial] {
             *sum = Row::ZERO;
         }
     }
@@ -369,15 +385,18 @@ impl Chain {
             for l in 0..LANES {
                 let length = batch.length.0[l];
                 let scale = length * self.mass_per_length;
-                let mut twice = 0.0;
+                let (mut twice, mut inertial) = (0.0, 0.0);
                 for i in 0..4 {
                     let m = &mass[i];
                     let product = |x: &[Rows3; 4]| m[0] * x[0][c].0[l] + m[1] * x[1][c].0[l] + m[2] * x[2][c].0[l] + m[3] * x[3][c].0[l];
-                    twice += product(&batch.w) * batch.w[i][c].0[l];
-                    let f = batch.f[i][c].0[l] + scale * (total[i] * field - product(&batch.a));
+                    let (v, inertia) = (batch.w[i][c].0[l], product(&batch.a));
+                    twice += product(&batch.w) * v;
+                    inertial += inertia * v;
+                    let f = batch.f[i][c].0[l] + scale * (total[i] * field - inertia);
                     batch.f[i][c].0[l] = if i % 2 == 1 { f * length } else { f };
                 }
                 batch.kinetic.0[l] += 0.5 * scale * twice;
+                batch.inertial.0[l] += scale * inertial;
             }
         }
     }

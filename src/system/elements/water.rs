@@ -61,7 +61,9 @@ pub fn immerse<const TANGENT: bool, const CROSS_FLOW: bool>(
         let wl = weight * batch.length.0[l] * batch.wet.0[l];
         let (w2, wp, p2) = (dot(&x.w, &x.w), dot(&x.w, &x.p), dot(&x.p, &x.p));
         batch.turning.0[l] += wl * load.turning;
+        let a: [f64; 3] = std::array::from_fn(|c| x.a[c] - env.base[c].0[2]);
         batch.kinetic.0[l] += wl * (w2 - wp * wp / p2) * (0.5 * water.added_mass);
+        batch.inertial.0[l] += wl * (dot(&x.w, &a) - wp * dot(&a, &x.p) / p2) * water.added_mass;
         for c in 0..3 {
             let f = wl * load.f[c];
             for i in 0..4 {

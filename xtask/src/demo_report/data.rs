@@ -32,6 +32,8 @@ pub struct DemoData {
     pub wall_seconds: f64,
     /// Further facts about the run for the table, in order: scene, ship, sea, seed, communication step, ... as (what, value).
     pub facts: Vec<(String, String)>,
+    /// A page that shows the cable moving.
+    pub animation: Option<String>,
     /// Processor and system on which it ran.
     pub machine: String,
 }

@@ -6,7 +6,7 @@ mod figures;
 mod tables;
 #[cfg(test)]
 mod tests;
-mod units;
+pub mod units;
 
 use crate::error::Failure;
 use crate::html_report::Page;
@@ -41,6 +41,10 @@ pub fn write(data: &DemoData, dir: &Path) -> Result<(), Failure> {
          outside the FMU made the winch's set-point from the ship's motion.",
     );
     page.tiles(&tables::key_figures(data));
+    if let Some(animation) = &data.animation {
+        save("animation.html", animation)?;
+        page.file("animation.html", "the cable, the winch and the ship moving");
+    }
     for (heading, figures) in figures::sections(data) {
         if figures.is_empty() {
             continue;

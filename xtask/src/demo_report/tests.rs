@@ -62,6 +62,7 @@ fn synthetic() -> DemoData {
             ("Communication step".into(), "0.02 s".into()),
         ],
         machine: "made-up numbers, no machine".into(),
+        animation: None,
     }
 }
 

@@ -7,6 +7,7 @@ pub const LENGTH: Unit = Unit(&[("mm", 1e3), ("m", 1.0)]);
 /// For positions of which the change counts.
 pub const MILLIMETRES: Unit = Unit(&[("mm", 1e3)]);
 pub const FORCE: Unit = Unit(&[("mN", 1e3), ("N", 1.0), ("kN", 1e-3)]);
+pub const LINE_LOAD: Unit = Unit(&[("mN/m", 1e3), ("N/m", 1.0), ("kN/m", 1e-3)]);
 pub const ANGLE: Unit = Unit(&[("°", 180.0 / std::f64::consts::PI)]);
 pub const TORQUE: Unit = Unit(&[("mN·m", 1e3), ("N·m", 1.0), ("kN·m", 1e-3)]);
 

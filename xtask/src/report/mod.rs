@@ -4,9 +4,11 @@
 
 mod bench;
 mod cases;
+mod cost;
 mod dynamics;
 mod edge;
 mod flume;
+mod hard;
 mod identification;
 mod inputs;
 mod moving_pulley;
@@ -46,7 +48,7 @@ pub use speed::{Args as BenchArgs, bench as run_bench};
 /// Write fmu-tests/report from runs of packed FMUs: closed forms, the thesis's experiments, other programs' references
 #[derive(clap::Args)]
 pub struct Args {
-    /// Only the sections whose name contains this; prints the verdicts and writes nothing
+    /// Only the sections whose name contains this; prints the verdicts and writes nothing, but for `hard`, which writes the hard cases' page
     #[arg(long, value_name = "NAME")]
     only: Option<String>,
 }
@@ -74,9 +76,10 @@ const SECTIONS: [(&str, Make); 12] = [
 /// # Errors
 /// A build that fails, a folder that cannot be written, a bound that is missed.
 pub fn run(args: Args) -> Result<()> {
-    let chosen: Vec<_> = SECTIONS.iter().filter(|(name, _)| args.only.as_ref().is_none_or(|only| name.contains(only.as_str()))).collect();
+    let all: Vec<_> = SECTIONS.iter().chain(&hard::GROUPS).collect();
+    let chosen: Vec<_> = all.iter().filter(|(name, _)| args.only.as_ref().is_none_or(|only| name.contains(only.as_str()))).collect();
     if chosen.is_empty() {
-        let names: Vec<_> = SECTIONS.iter().map(|(name, _)| *name).collect();
+        let names: Vec<_> = all.iter().map(|(name, _)| *name).collect();
         return Err(Failure(format!("--only {}: no such section; there are {}", args.only.unwrap_or_default(), names.join(", "))));
     }
     let clock = Instant::now();
@@ -104,9 +107,16 @@ pub fn run(args: Args) -> Result<()> {
     }
     print!("{}", page::verdicts(&sections));
     println!("{} FMUs packed, {:.0} s", bench.count(), clock.elapsed().as_secs_f64());
+    let folder = root().join("fmu-tests").join("report");
+    let first_hard = chosen.iter().position(|(name, _)| name.starts_with(hard::PREFIX)).unwrap_or(chosen.len());
     if args.only.is_none() {
-        let folder = root().join("fmu-tests").join("report");
-        page::write(&sections, &folder)?;
+        page::write(&sections[..first_hard], &folder)?;
+        println!("{}", crate::results::shown(&folder.join("index.html")));
+    }
+    // A page of its own, written when it is whole: its cases take as long as all the rest.
+    if chosen.len() - first_hard == hard::GROUPS.len() {
+        let folder = folder.join("hard");
+        page::write_hard(&sections[first_hard..], &folder)?;
         println!("{}", crate::results::shown(&folder.join("index.html")));
     }
     let missed: usize = sections.iter().map(Section::missed).sum();

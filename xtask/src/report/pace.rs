@@ -30,7 +30,7 @@ struct Pace {
 
 fn ride(bench: &Bench, tries: u32, seconds: f64) -> Result<Pace> {
     let scene = Scene::built_in("overboard")?.ok_or_else(|| Failure("there is no built-in scene overboard".into()))?;
-    let fmu = bench.pack(&scene.with("solver.tries_max", tries))?;
+    let fmu = bench.pack(&scene.with("solver.method", "rodas4").with("solver.tries_max", tries))?;
     let motion = generate(&sea(seconds))?;
     let first: Vec<(&str, f64)> = HEADER[1..].iter().copied().zip(motion.row(0)).collect();
     let instance = start(&fmu, &[], &first)?;

@@ -9,6 +9,8 @@ pub enum Truth {
     Paper,
     /// Another program.
     Cross,
+    /// Our own run, refined.
+    Own,
 }
 
 impl Truth {
@@ -18,6 +20,7 @@ impl Truth {
             Truth::Exact => "exact",
             Truth::Paper => "paper",
             Truth::Cross => "cross",
+            Truth::Own => "own",
         }
     }
 }

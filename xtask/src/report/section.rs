@@ -12,8 +12,14 @@ pub enum Block {
     Table(Vec<String>, Vec<Vec<String>>),
     /// Figures held against a truth.
     Rows(Vec<Row>),
+    /// Cases: a table whose first column holds sentences.
+    Cases(Vec<String>, Vec<Vec<String>>),
+    /// Figures that a table of [`Block::Cases`] shows; they count, and stand in the summary.
+    Counted(Vec<Row>),
     /// A chart in a file of this name (without ending), with its caption.
     Chart(String, Box<Chart>, String),
+    /// Small charts side by side: file (without ending) and chart.
+    Gallery(Vec<(String, Chart)>),
     /// A file of numbers: name, text, what it holds.
     Csv(String, String, String),
 }
@@ -50,9 +56,27 @@ impl Section {
         self
     }
 
+    /// With a table of cases.
+    pub fn case_table(mut self, header: &[&str], rows: Vec<Vec<String>>) -> Self {
+        self.blocks.push(Block::Cases(header.iter().map(|h| (*h).to_owned()).collect(), rows));
+        self
+    }
+
+    /// With figures that another table shows.
+    pub fn counted(mut self, rows: Vec<Row>) -> Self {
+        self.blocks.push(Block::Counted(rows));
+        self
+    }
+
     /// With a chart.
     pub fn chart(mut self, file: &str, chart: Chart, caption: impl Into<String>) -> Self {
         self.blocks.push(Block::Chart(file.to_owned(), Box::new(chart), caption.into()));
+        self
+    }
+
+    /// With small charts side by side.
+    pub fn gallery(mut self, charts: Vec<(String, Chart)>) -> Self {
+        self.blocks.push(Block::Gallery(charts));
         self
     }
 
@@ -64,7 +88,10 @@ impl Section {
 
     /// All figures.
     pub fn figures(&self) -> impl Iterator<Item = &Row> {
-        self.blocks.iter().filter_map(|block| if let Block::Rows(rows) = block { Some(rows) } else { None }).flatten()
+        self.blocks
+            .iter()
+            .filter_map(|block| if let Block::Rows(rows) | Block::Counted(rows) = block { Some(rows) } else { None })
+            .flatten()
     }
 
     /// How many figures missed their bound.

@@ -5,6 +5,7 @@
 
 use super::bench::Bench;
 use super::cases::{Case, Place, cases};
+use super::cost;
 use super::rival_runs::{Program, Rivals};
 use super::rivals::{self, RivalPoint, Work};
 use super::row::share;
@@ -17,7 +18,7 @@ use crate::plots::{Chart, PALETTE, Panel, Series};
 /// Work-precision diagrams of every time integrator, as fmu-tests/bench
 #[derive(clap::Args)]
 pub struct Args {
-    /// Only the scenes whose name contains this; prints the table and writes nothing
+    /// Only the scenes whose name contains this, or what things cost (`cost`); prints the tables and writes nothing
     #[arg(long, value_name = "NAME")]
     only: Option<String>,
     /// Also run other programs on the scenes that they can compute: Exudyn and MoorDyn from PyPI, in an environment of their own in the target
@@ -121,9 +122,10 @@ pub fn bench(args: Args) -> Result<()> {
         return super::pace::pace(seconds);
     }
     let all = cases()?;
+    let costs = args.only.as_deref().is_none_or(|only| only == "cost");
     let chosen: Vec<&Case> = all.iter().filter(|c| args.only.as_ref().is_none_or(|only| c.name.contains(only.as_str()))).collect();
-    if chosen.is_empty() {
-        let names: Vec<_> = all.iter().map(|c| c.name).collect();
+    if chosen.is_empty() && !costs {
+        let names: Vec<_> = all.iter().map(|c| c.name).chain(["cost"]).collect();
         return Err(Failure(format!("--only {}: no such scene; there are {}", args.only.unwrap_or_default(), names.join(", "))));
     }
     let rivals = args.peers.then(Rivals::new).transpose()?;
@@ -152,6 +154,9 @@ pub fn bench(args: Args) -> Result<()> {
             format!("scene ({}),program ({}),elements,step,tension_error,place_error,seconds", names.join(" "), Program::ALL.map(Program::name).join(" "));
         let columns = rivals::numbers(&theirs, &names);
         sections.insert(0, section.csv("peers", &header, &columns.each_ref().map(Vec::as_slice), "every run of theirs"));
+    }
+    if costs {
+        sections.extend(cost::sections(&bench)?);
     }
     if args.only.is_some() {
         return Ok(());
