@@ -11,8 +11,6 @@ use crate::ship_motion::{HEADER, generate};
 /// What is compared beside the tension.
 #[derive(Clone, Copy, Debug)]
 pub enum Place {
-    /// Nothing.
-    Nothing,
     /// Two outputs, a point's x and z, m.
     Point([&'static str; 2]),
     /// The direction, rad below the horizontal, from one point's x and z to another's.
@@ -37,6 +35,8 @@ pub struct Case {
     pub what: &'static str,
     /// As it is packed, but for method and tolerance.
     pub scene: Scene,
+    /// Numbers of elements that it is run with; its own mesh where there are none.
+    pub meshes: &'static [usize],
     /// The output that is compared, N.
     pub tension: &'static str,
     /// What else is compared.
@@ -66,6 +66,15 @@ pub struct Ran {
 }
 
 impl Case {
+    /// The scene on every mesh that it is run with.
+    pub fn scenes(&self) -> Vec<Scene> {
+        if self.meshes.is_empty() {
+            vec![self.scene.clone()]
+        } else {
+            self.meshes.iter().map(|n| self.scene.clone().elements(*n)).collect()
+        }
+    }
+
     /// Runs the case's scene, or another one in its place.
     ///
     /// # Errors
@@ -74,7 +83,6 @@ impl Case {
         let fmu = bench.pack(&scene.clone().with("solver.method", method).with("solver.tolerance", tolerance))?;
         let drive = Drive { inputs: self.inputs, at: &*self.at, ..Drive::still(self.step, self.end) };
         let names: [&str; 5] = match self.place {
-            Place::Nothing => [self.tension; 5],
             Place::Point([x, z]) => [self.tension, x, z, x, z],
             Place::Chord([x0, z0, x1, z1]) => [self.tension, x0, z0, x1, z1],
         };
@@ -85,7 +93,6 @@ impl Case {
             if best.as_ref().is_none_or(|b| seconds < b.seconds) {
                 let [tension, a, b, c, d] = run.columns;
                 let place = match self.place {
-                    Place::Nothing => Vec::new(),
                     Place::Point(_) => a.into_iter().zip(b).map(|(x, z)| [x, z]).collect(),
                     Place::Chord(_) => (0..a.len()).map(|i| [(b[i] - d[i]).atan2(c[i] - a[i]), 0.0]).collect(),
                 };
@@ -157,8 +164,9 @@ fn string() -> Result<Case> {
     let dropped = "[anchor]\nposition = [0, 0, 0]\n[body]\nmass = 1.33e-3\n[initial]\nstate = \"straight\"\ndirection = [1, 0, 0]\n";
     Ok(Case {
         name: "p3",
-        what: "P3, a string let go level, 40 elements",
+        what: "P3, a string let go level",
         scene: wire.scene(G, 40, 0, dropped)?,
+        meshes: &[24, 32, 40, 48],
         tension: "anchor.tension",
         place: BODY,
         step: 0.002,
@@ -178,8 +186,9 @@ fn heaved_wire() -> Result<Case> {
     let stretched: Vec<ShapeRow> = [0.0, 200.0].map(|s| (s, [0.0, 0.0, -s * end / 200.0], [0.0, 0.0, -end / 200.0], [0.0; 3])).into();
     Ok(Case {
         name: "p4a",
-        what: "P4a, 200 m of wire heaved without slack, 5 elements",
+        what: "P4a, 200 m of wire heaved without slack",
         scene: HEAVY_WIRE.scene(G, 5, 0, HEAVED)?.start_shape(&stretched),
+        meshes: &[2, 5, 10],
         tension: "anchor.tension",
         place: BODY,
         step: 0.01,
@@ -195,8 +204,9 @@ fn snapping_wire() -> Result<Case> {
     let scene = |elements| HEAVY_WIRE.scene(G, elements, 0, HEAVED);
     Ok(Case {
         name: "p4b",
-        what: "P4b, the same with slack and snaps, 20 elements",
+        what: "P4b, the same with slack and snaps",
         scene: scene(20)?,
+        meshes: &[10, 20, 40],
         tension: "anchor.tension",
         place: BODY,
         step: 0.01,
@@ -217,8 +227,9 @@ fn towed_sphere() -> Result<Case> {
     let scene = |elements| wire.scene(G, elements, 0, &rest);
     Ok(Case {
         name: "p5",
-        what: "P5, a sphere towed in a shear flow, heaved by 1 cm every second, 40 elements",
+        what: "P5, a sphere towed in a shear flow, heaved by 1 cm every second",
         scene: scene(40)?,
+        meshes: &[10, 20, 40],
         tension: "anchor.tension",
         place: BODY,
         step: 0.01,
@@ -240,6 +251,7 @@ fn flume() -> Result<Case> {
         name: "flume",
         what: "flume in the demo's seaway, the winch held, 24 elements",
         scene: built_in("flume")?,
+        meshes: &[],
         tension: "winch.tension",
         place: BODY,
         step: 0.01,
@@ -258,6 +270,7 @@ fn overboard() -> Result<Case> {
         name: "overboard",
         what: "overboard in the seaway of its page, the winch held",
         scene: built_in("overboard")?,
+        meshes: &[],
         tension: "winch.tension",
         place: BODY,
         step,
@@ -274,8 +287,9 @@ fn pendulum() -> Result<Case> {
     let (rope, rest, rows) = super::wire::pulley_pendulum();
     Ok(Case {
         name: "p1",
-        what: "P1, a pendulum over a pulley, 40 elements",
+        what: "P1, a pendulum over a pulley",
         scene: rope.scene(G, 40, 3, &rest)?.start_shape(&rows),
+        meshes: &[20, 40, 48],
         tension: "load.tension",
         place: Place::Chord(["cable.point[2].x", "cable.point[2].z", "cable.point[3].x", "cable.point[3].z"]),
         step: 0.002,

@@ -30,6 +30,7 @@ mod sheaves;
 mod speed;
 mod statics;
 mod tangent;
+mod targets;
 mod track;
 #[path = "../../../fmu-tests/rust/bench/wire.rs"]
 mod wire;
