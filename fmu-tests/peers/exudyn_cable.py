@@ -20,6 +20,11 @@ GRAVITY = 9.81
 OUTPUT = exu.OutputVariableType
 
 
+def linear_bending(mbs, t, item_number, place, curvature, curvature_t, curvature_0, stiffness, damping, strain, strain_t, strain_0):
+    """The bending moment that Exudyn would take by itself."""
+    return stiffness * curvature
+
+
 class Model:
     """Planar cable elements on nodes of position and slope, rows of x, z, x', z' at equal distances in unstretched length."""
 
@@ -38,7 +43,9 @@ class Model:
                 bendingStiffness=bending,
                 axialDamping=damping,
                 strainIsRelativeToReference=0.0,
+                # Exudyn asks for a law of the axial force only where there is one of the bending moment, too.
                 axialForceUserFunction=law or 0,
+                bendingMomentUserFunction=linear_bending if law else 0,
                 nodeNumbers=list(pair),
             )
             self.elements.append(self.system.AddObject(element))
