@@ -143,8 +143,8 @@ pub fn section(points: &[RivalPoint]) -> Section {
     let text = "Exudyn 1.13.6 and MoorDyn 2.7.2 on the same scenes, in the same run on the same machine; CPU seconds of the solver call alone, \
                 theirs and ours. \u{201c}As good\u{201d} is in tension and in place; the place is the body's in m, in P1 the wrap angle in rad. \
                 Their drivers are in fmu-tests/peers. Exudyn runs in P1 with twelve contact segments an element, the most it takes, and in P4b \
-                with a law in Python, because it has none of its own without compression. MoorDyn's start is its own: in P3 a taut catenary \
-                instead of a straight string, in P4a hung at rest.";
+                with a law in Python, because it has none of its own without compression. MoorDyn \
+                starts P4 hung at rest, not stretched uniformly; its steps in P5 are of the greatest round number that stays stable.";
     Section::new("Other programs' runs").text(text).table(&header, points.iter().map(row).collect())
 }
 
