@@ -198,7 +198,10 @@ def main():
             seconds += time.process_time() - start
             t = (block + each) * step
             x, _, z = moordyn.GetPointPos(body)
-            rows.append((t, math.hypot(force[0], force[1], force[2] - lump * motion(t)[1]), x, z))
+            pull = (force[0], force[2] - lump * motion(t)[1])
+            # A cable that pushes, as P4b's damping does, has a tension below 0.
+            towards = pull[0] * x + pull[1] * (z - heights[block + each][2])
+            rows.append((t, math.copysign(math.hypot(*pull), towards), x, z))
         moordyn.Close(system)
     with Path(out).open("w") as file:
         file.write("time,tension,x,z\n")
