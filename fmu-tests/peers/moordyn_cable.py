@@ -3,11 +3,12 @@
     moordyn_cable.py SCENE ELEMENTS STEP EVERY END OUT
 
 writes what the comparison asks for every EVERY seconds up to END to OUT (CSV, SI units) and prints the CPU seconds of the stepping loop. The scenes
-(p4a, p4b, p5) are those of fmu-tests/references/README.md.
+(p3, p4a, p4b, p5) are those of fmu-tests/references/README.md.
 """
 
 import math
 import os
+import struct
 import sys
 import tempfile
 import time
@@ -77,6 +78,30 @@ WIRE = {
     "rest_step": 1.0,
     "rest_within": 1e-7,
 }
+STRING = {
+    "diameter": 4.5e-4,
+    "mass": 2e-4,
+    "stiffness": 222.0,
+    "damping": 0.02,
+    "bending": 2.82e-6,
+    "drag": 0.0,
+    "added_mass": 0.0,
+    "axial_drag": 0.0,
+    "top": 0.0,
+    "length": 1.0,
+    "x": 1.0,
+    "z": 0.0,
+    "body_mass": 1.33e-3,
+    "volume": 0.0,
+    "drag_area": 0.0,
+    "body_added_mass": 0.0,
+    "density": 0.0,
+    "depth": 1000.0,
+    "currents": 0,
+    "rest_time": 0.0,
+    "rest_step": 1.0,
+    "rest_within": 1e-7,
+}
 REACH = math.hypot(0.7097202495, 0.6868668200)
 NYLON = {
     "diameter": 4.5e-4,
@@ -89,7 +114,7 @@ NYLON = {
     "axial_drag": 0.05,
     "top": 0.46,
     "length": 1.01,
-    # Straight towards the place where the sphere would rest: MoorDyn finds its own start without the current.
+    # Straight towards the place where the sphere would rest: from there the current bends it.
     "x": 1.01 * 0.7097202495 / REACH,
     "z": 0.46 - 1.01 * 0.6868668200 / REACH,
     "body_mass": 1.33e-3,
@@ -108,19 +133,36 @@ CURRENT = [(-0.5, 0.03655), (0.0, 0.3302)]
 
 
 def eased(t, amplitude, period):
-    """amplitude sin(2 pi t/period) after a half-cosine ramp over two periods, and its rate."""
+    """amplitude sin(2 pi t/period) after a half-cosine ramp over two periods, and its acceleration."""
     ramp, rate = 2.0 * period, 2.0 * math.pi / period
     k = math.pi / ramp
-    s, s_t = (0.5 * (1.0 - math.cos(k * t)), 0.5 * k * math.sin(k * t)) if t < ramp else (1.0, 0.0)
+    s, s_t, s_tt = (
+        (0.5 * (1.0 - math.cos(k * t)), 0.5 * k * math.sin(k * t), 0.5 * k * k * math.cos(k * t)) if t < ramp else (1.0, 0.0, 0.0)
+    )
     wave, wave_t = amplitude * math.sin(rate * t), amplitude * rate * math.cos(rate * t)
-    return s * wave, s_t * wave + s * wave_t
+    return s * wave, s_tt * wave + 2.0 * s_t * wave_t - rate * rate * s * wave
 
 
 SCENES = {
+    "p3": (STRING, lambda t: (0.0, 0.0)),
     "p4a": (WIRE, lambda t: eased(t, 2.5, 6.0)),
     "p4b": (WIRE, lambda t: eased(t, 5.0, 4.0)),
     "p5": (NYLON, lambda t: eased(t, 0.01, 1.0)),
 }
+
+
+def straighten(system, line, elements, top, body):
+    """Puts the line's inner nodes on the straight line to the body: MoorDyn itself starts from a catenary. They can be set in a saved state only."""
+    moordyn.SaveState(system, "state")
+    state = Path("state").read_bytes()
+    for k in range(1, elements):
+        found = struct.pack("<3d", *moordyn.GetLineNodePos(line, k))
+        if state.count(found) != 1:
+            sys.exit(f"node {k} is not found in MoorDyn's saved state")
+        share = 1.0 - k / elements
+        state = state.replace(found, struct.pack("<3d", share * body[0], 0.0, top + share * (body[2] - top)))
+    Path("state").write_bytes(state)
+    moordyn.LoadState(system, "state")
 
 
 def main():
@@ -137,34 +179,33 @@ def main():
         top = values["top"]
         moordyn.SetVerbosity(system, moordyn.LEVEL_WRN)
         moordyn.Init(system, [0.0, 0.0, top], [0.0, 0.0, 0.0])
-        body = moordyn.GetPoint(system, 2)
+        line, body = moordyn.GetLine(system, 1), moordyn.GetPoint(system, 2)
+        if values["rest_time"] == 0.0:
+            straighten(system, line, elements, top, moordyn.GetPointPos(body))
         # A point's velocity is held over a call, so every call is one step.
         steps, each = round(end / step), round(every / step)
-        moves = [motion(k * step) for k in range(steps + 1)]
-        heights = [[0.0, 0.0, top + z] for z, _ in moves]
-        speeds = [[0.0, 0.0, (after[0] - before[0]) / step] for before, after in zip(moves, moves[1:], strict=False)]
-        rows = []
-
-        def record(t, force):
-            x, _, z = moordyn.GetPointPos(body)
-            # A slack line's damping pushes.
-            pull = math.copysign(math.hypot(*force), force[0] * x + force[2] * (z - top))
-            rows.append([t, pull, x, z])
-
-        # What holds the top is known after a step only; the start does not count.
-        record(0.0, [0.0, 0.0, 0.0])
-        seconds = 0.0
-        advance = moordyn.Step
+        moves = [motion(k * step)[0] for k in range(steps + 1)]
+        heights = [[0.0, 0.0, top + z] for z in moves]
+        speeds = [[0.0, 0.0, (after - before) / step] for before, after in zip(moves, moves[1:], strict=False)]
+        # The force on the held end leaves out the inertia of the half segment that is lumped there.
+        lump = 0.5 * values["mass"] * values["length"] / elements
+        x, _, z = moordyn.GetPointPos(body)
+        rows, seconds = [(0.0, math.hypot(*moordyn.GetLineNodeTen(line, elements)), x, z)], 0.0
         for block in range(0, steps, each):
             start = time.process_time()
             for k in range(block, block + each):
-                force = advance(system, heights[k], speeds[k], k * step, step)
+                force = moordyn.Step(system, heights[k], speeds[k], k * step, step)
             seconds += time.process_time() - start
-            record((block + each) * step, force)
+            t = (block + each) * step
+            x, _, z = moordyn.GetPointPos(body)
+            pull = (force[0], force[2] - lump * motion(t)[1])
+            # A cable that pushes, as P4b's damping does, has a tension below 0.
+            towards = pull[0] * x + pull[1] * (z - heights[block + each][2])
+            rows.append((t, math.copysign(math.hypot(*pull), towards), x, z))
         moordyn.Close(system)
     with Path(out).open("w") as file:
         file.write("time,tension,x,z\n")
-        file.writelines(",".join(f"{v:.10g}" for v in row) + "\n" for row in rows)
+        file.writelines(",".join(f"{value:.10g}" for value in row) + "\n" for row in rows)
     print(f"seconds {seconds:.6f}")
 
 

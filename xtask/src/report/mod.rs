@@ -19,7 +19,6 @@ mod pace;
 mod page;
 mod peers;
 mod pulley;
-mod real_time;
 mod rival_runs;
 mod rivals;
 mod row;
@@ -31,6 +30,7 @@ mod sheaves;
 mod speed;
 mod statics;
 mod tangent;
+mod targets;
 mod track;
 #[path = "../../../fmu-tests/rust/bench/wire.rs"]
 mod wire;

@@ -61,7 +61,7 @@ pub fn write_speed(sections: &[Section], machine: &str, peers: bool, numbers: &s
     let mut page = Page::new("fairlead: speed against error").wide();
     page.paragraph(&format!(
         "Written by \u{201c}cargo xtask bench\u{201d} on {machine}. Each packed scene was run by every time integrator at tolerances from \
-         1e-2 to 1e-5 on one thread; the time is the processor's in the communication loop (inputs, step, outputs), the least of three runs where \
+         3e-2 to 1e-4 on one thread; the time is the processor's in the communication loop (inputs, step, outputs), the least of three runs where \
          they are short. Times are this machine's and good to a third; sub-steps and errors are exact. {} All numbers are in work.csv.",
         if peers {
             "Other programs ran on the same scenes in between."

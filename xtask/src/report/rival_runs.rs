@@ -67,15 +67,18 @@ impl Plan {
 }
 
 /// Steps are the greatest that run through and are worth it: an explicit program's is near the limit of its stability.
-pub const PLANS: [Plan; 12] = [
+pub const PLANS: [Plan; 15] = [
     Plan::new(Program::Exudyn, "p1", 10, 2e-4),
     Plan::new(Program::Exudyn, "p1", 20, 2e-4),
     Plan::new(Program::Exudyn, "p1", 40, 1e-4),
     Plan::new(Program::Exudyn, "p3", 10, 1e-3),
     Plan::new(Program::Exudyn, "p3", 20, 5e-4),
     Plan::new(Program::Exudyn, "p3", 40, 2e-4),
+    Plan::new(Program::MoorDyn, "p3", 20, 1e-5),
     Plan::new(Program::Exudyn, "p4a", 5, 1e-2),
     Plan::new(Program::MoorDyn, "p4a", 20, 1e-3),
+    Plan::new(Program::Exudyn, "p4b", 10, 2e-3),
+    Plan::new(Program::MoorDyn, "p4b", 10, 2e-3),
     Plan::new(Program::MoorDyn, "p4b", 20, 1e-3),
     Plan::new(Program::MoorDyn, "p5", 10, 4e-5),
     Plan::new(Program::MoorDyn, "p5", 20, 2e-5),

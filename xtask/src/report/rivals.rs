@@ -7,25 +7,7 @@ use super::section::Section;
 use super::track::{Off, Track};
 use crate::plots::{Colour, PALETTE, Series};
 
-/// What is asked for: ours at least so many times cheaper than the program, at the error of its finest run.
-struct Target {
-    case: &'static str,
-    program: Program,
-    times: f64,
-    /// Errors that the program's finest run was found to have when the target was set: tension over its rms, and the place where it counts.
-    error: f64,
-    place: Option<f64>,
-}
-
-const TARGETS: [Target; 5] = [
-    Target { case: "p1", program: Program::Exudyn, times: 100.0, error: 2e-3, place: Some(1e-4) },
-    Target { case: "p3", program: Program::Exudyn, times: 40.0, error: 7e-3, place: None },
-    Target { case: "p5", program: Program::MoorDyn, times: 100.0, error: 1.5e-3, place: None },
-    Target { case: "p4a", program: Program::Exudyn, times: 6.0, error: 4e-5, place: None },
-    Target { case: "p4b", program: Program::MoorDyn, times: 5.0, error: 6e-3, place: None },
-];
-
-/// A run of ours: error and CPU seconds.
+/// A run's error and CPU seconds.
 #[derive(Clone, Copy, Debug)]
 pub struct Work {
     /// How wrong.
@@ -34,61 +16,64 @@ pub struct Work {
     pub cost: f64,
 }
 
+/// A run of ours.
+#[derive(Clone, Copy, Debug)]
+pub struct OwnRun {
+    /// `solver.method`.
+    pub method: &'static str,
+    /// Mesh.
+    pub elements: usize,
+    /// `solver.tolerance`.
+    pub tolerance: f64,
+    /// What came of it.
+    pub work: Work,
+    /// The solver's sub-steps.
+    pub sub_steps: f64,
+}
+
+impl OwnRun {
+    /// Method, mesh and tolerance in words.
+    pub fn name(&self) -> String {
+        format!("{}, {} elements, {:.0e}", self.method, self.elements, self.tolerance)
+    }
+}
+
 /// A run of theirs, or why there is none.
 pub struct RivalPoint {
     /// Which.
     pub plan: Plan,
     /// What came of it.
     pub work: Result<Work, String>,
-    /// Ours at its error: method and mesh, and s.
-    ours: Option<(String, f64)>,
+    /// Our cheapest run that is as good.
+    pub ours: Option<OwnRun>,
 }
 
 impl RivalPoint {
     fn ratio(&self) -> Option<f64> {
-        Some(self.work.as_ref().ok()?.cost / self.ours.as_ref()?.1)
+        Some(self.work.as_ref().ok()?.cost / self.ours?.work.cost)
     }
 }
 
-/// CPU seconds on a curve of runs, from the loosest tolerance to the tightest, at an error: between two runs on either side linear in the
-/// logarithms; where every run is better the cheapest one. None where none is as good.
-fn cost_at(curve: &[Work], error: f64, of: fn(&Off) -> Option<f64>) -> Option<f64> {
-    let points: Vec<(f64, f64)> = curve.iter().filter_map(|w| Some((of(&w.off)?, w.cost))).collect();
-    let good = points.iter().filter(|(e, _)| *e <= error).map(|(_, cost)| *cost);
-    let between = points.windows(2).filter_map(|pair| {
-        let [(e0, c0), (e1, c1)] = [pair[0], pair[1]];
-        // Rounding aside, an exact run has no logarithm to interpolate.
-        let inside = e0.max(e1) > error && e0.min(e1) <= error && e0.min(e1) > 0.0;
-        inside.then(|| (c0.ln() + (error / e0).ln() / (e1 / e0).ln() * (c1 / c0).ln()).exp())
+/// Our cheapest run whose errors are no greater: of tension, and of place.
+fn cheapest(own: &[OwnRun], off: &Off) -> Option<OwnRun> {
+    let good = own.iter().filter(|run| {
+        let place = off.place.is_none_or(|bound| run.work.off.place.is_some_and(|p| p <= bound));
+        run.work.off.tension <= off.tension && place
     });
-    good.chain(between).min_by(f64::total_cmp)
+    good.min_by(|a, b| a.work.cost.total_cmp(&b.work.cost)).copied()
 }
 
-/// The cheapest of our curves at an error: of tension, and of place where that counts too.
-pub fn cheapest(curves: &[(String, Vec<Work>)], off: &Off, place: bool) -> Option<(String, f64)> {
-    let costs = curves.iter().filter_map(|(method, curve)| {
-        let tension = cost_at(curve, off.tension, |o| Some(o.tension))?;
-        let both = match off.place.filter(|_| place) {
-            Some(error) => tension.max(cost_at(curve, error, |o| o.place)?),
-            None => tension,
-        };
-        Some((method.clone(), both))
-    });
-    costs.min_by(|a, b| a.1.total_cmp(&b.1))
-}
-
-/// Runs what there is of other programs for a case and holds it against our curves, one a method.
-pub fn measure(rivals: &Rivals, case: &Case, truth: &Track, curves: &[(String, Vec<Work>)], repeats: usize, long: f64) -> Vec<RivalPoint> {
+/// Runs what there is of other programs for a case and holds it against our runs.
+pub fn measure(rivals: &Rivals, case: &Case, truth: &Track, own: &[OwnRun], repeats: usize, long: f64) -> Vec<RivalPoint> {
     // Samples as often as the truth's.
     let every = truth.times[1] - truth.times[0];
-    let counts = TARGETS.iter().any(|t| t.case == case.name && t.place.is_some());
     let mut points = Vec::new();
     for plan in PLANS.into_iter().filter(|plan| plan.case == case.name) {
         let work = rivals
             .run(&plan, every, case.end, repeats, long)
             .and_then(|(track, cost)| Ok(Work { off: track.off(truth, case.from)?, cost }))
             .map_err(|e| e.to_string());
-        let ours = work.as_ref().ok().and_then(|w| cheapest(curves, &w.off, counts));
+        let ours = work.as_ref().ok().and_then(|w| cheapest(own, &w.off));
         let what = match &work {
             Ok(w) => format!(
                 "error {:.1e}{}  {:8.1} ms  {:6.1} x real time",
@@ -107,13 +92,13 @@ pub fn measure(rivals: &Rivals, case: &Case, truth: &Track, curves: &[(String, V
     points
 }
 
-/// Their lines in a case's chart.
-pub fn series(case: &Case, points: &[RivalPoint]) -> Vec<Series> {
+/// Their lines in a case's chart of an error.
+pub fn series(case: &Case, points: &[RivalPoint], error: fn(&Off) -> Option<f64>) -> Vec<Series> {
     const COLOURS: [Colour; 2] = [PALETTE[4], PALETTE[5]];
     let line = |(k, program): (usize, &Program)| {
         let works = points.iter().filter(|p| p.plan.program == *program).filter_map(|p| p.work.as_ref().ok());
-        let points: Vec<_> = works.map(|w| (w.off.tension.log10(), (case.end / w.cost).log10())).collect();
-        (!points.is_empty()).then(|| Series { points, ..Series::new(program.name(), &[], &[], COLOURS[k]) }.dashed())
+        let points: Vec<_> = works.filter_map(|w| Some((error(&w.off)?.log10(), (case.end / w.cost).log10()))).collect();
+        (!points.is_empty()).then(|| Series { points, ..Series::new(program.name(), &[], &[], COLOURS[k]) }.width(2.5))
     };
     Program::ALL.iter().enumerate().filter_map(line).collect()
 }
@@ -137,63 +122,30 @@ pub fn place(error: Option<f64>) -> String {
     error.map_or(String::new(), |p| format!("{p:.1e}"))
 }
 
-/// The program's run that the target speaks of: its finest.
-fn finest<'a>(target: &Target, points: &'a [RivalPoint]) -> Option<&'a RivalPoint> {
-    points.iter().rfind(|p| p.plan.case == target.case && p.plan.program == target.program)
-}
-
-/// The section with all ratios and what was asked for; the second says how many targets are held of how many measured.
-pub fn section(points: &[RivalPoint]) -> (Section, [usize; 2]) {
-    let mut held = [0; 2];
-    let rows = points.iter().map(|p| {
-        let target = TARGETS.iter().find(|t| finest(t, points).is_some_and(|f| std::ptr::eq(f, p)));
-        let asked = target.map_or(String::new(), |t| {
-            let place = t.place.map_or(String::new(), |p| format!(", {p:.0e}"));
-            format!("{}, at {}{place}", t.times, share(t.error))
-        });
-        let verdict = match (target, p.ratio()) {
-            (Some(t), Some(ratio)) => {
-                held[1] += 1;
-                held[0] += usize::from(ratio >= t.times);
-                if ratio >= t.times { "held" } else { "NOT HELD" }
-            }
-            (Some(_), None) => "not measured",
-            (None, _) => "",
-        };
+/// The section with every run of theirs and our cheapest that is as good.
+pub fn section(points: &[RivalPoint]) -> Section {
+    let row = |p: &RivalPoint| {
         let (errors, cost) = match &p.work {
             Ok(w) => ([share(w.off.tension), place(w.off.place)], format!("{:.1}", 1e3 * w.cost)),
             Err(e) => ([format!("left out: {e}"), String::new()], String::new()),
         };
         let ours = match (&p.ours, &p.work) {
-            (Some((method, cost)), _) => format!("{:.2}, {method}", 1e3 * cost),
+            (Some(run), _) => format!("{:.2}, {}", 1e3 * run.work.cost, run.name()),
             (None, Ok(_)) => "none as good".to_owned(),
             (None, Err(_)) => String::new(),
         };
         let [tension, place] = errors;
         let ratio = p.ratio().map_or(String::new(), |r| format!("{r:.1}"));
-        let program = p.plan.program.name().to_owned();
-        vec![p.plan.case.to_uppercase(), program, p.plan.mesh(), tension, place, cost, ours, ratio, asked, verdict.to_owned()]
-    });
-    let rows = rows.collect();
-    let header = [
-        "Scene",
-        "Program",
-        "Mesh, step",
-        "Tension error",
-        "Place error",
-        "Its run, ms",
-        "Ours at its error, ms",
-        "Times cheaper",
-        "Asked for",
-        "",
-    ];
+        vec![p.plan.case.to_uppercase(), p.plan.program.name().to_owned(), p.plan.mesh(), tension, place, cost, ours, ratio]
+    };
+    let header =
+        ["Scene", "Program", "Mesh, step", "Tension error", "Place error", "Its run, ms", "Our cheapest as good, ms", "Times cheaper"];
     let text = "Exudyn 1.13.6 and MoorDyn 2.7.2 on the same scenes, in the same run on the same machine; CPU seconds of the solver call alone, \
-                theirs and ours. \u{201c}Ours at its error\u{201d} lies on the cheapest of our curves below, one a method and mesh, between two tolerances by \
-                logarithms; where our coarsest run is better than theirs it is that run, so the ratio is a lower bound. In P1 both the tension \
-                and the wrap angle must be as good. The place is the body's in m, in P1 the wrap angle in rad. Their drivers are in \
-                fmu-tests/peers; Exudyn runs in P1 with twelve contact segments an element, the most it takes; MoorDyn's steps in P5 are the \
-                greatest of a round number that stay stable.";
-    (Section::new("Against other programs").text(text).table(&header, rows), held)
+                theirs and ours. \u{201c}As good\u{201d} is in tension and in place; the place is the body's in m, in P1 the wrap angle in rad. \
+                Their drivers are in fmu-tests/peers. Exudyn runs in P1 with twelve contact segments an element, the most it takes, and in P4b \
+                with a law in Python, because it has none of its own without compression. MoorDyn \
+                starts P4 hung at rest, not stretched uniformly; its steps in P5 are of the greatest round number that stays stable.";
+    Section::new("Other programs' runs").text(text).table(&header, points.iter().map(row).collect())
 }
 
 /// Numbers for peers.csv: case and program by their places in `cases` and [`Program::ALL`], elements, step, errors (NaN for none), s.
@@ -214,48 +166,33 @@ pub fn numbers(points: &[RivalPoint], cases: &[&str]) -> [Vec<f64>; 7] {
 mod tests {
     use super::*;
 
-    fn work(tension: f64, place: f64, cost: f64) -> Work {
-        Work { off: Off { tension, place: Some(place) }, cost }
+    fn run(method: &'static str, tension: f64, place: f64, cost: f64) -> OwnRun {
+        let work = Work { off: Off { tension, place: Some(place) }, cost };
+        OwnRun { method, elements: 20, tolerance: 1e-3, work, sub_steps: 1.0 }
     }
 
     #[test]
-    fn exact_cost_at_an_error() {
-        // Error down by 100 for a cost up by 10: at a tenth of the first error √10 of its cost.
-        let curve = [work(1e-2, 1.0, 1.0), work(1e-4, 1e-3, 10.0), work(1e-4, 1e-3, 40.0)];
-        let at = |e| cost_at(&curve, e, |o| Some(o.tension));
-        assert!((at(1e-3).unwrap() - 10f64.sqrt()).abs() < 1e-12); // rounding
-        // Better than asked: the cheapest. As good as a run: that run. Worse than all: none.
-        assert_eq!((at(0.5), at(1e-2), at(1e-4), at(1e-5)), (Some(1.0), Some(1.0), Some(10.0), None));
-        assert_eq!(cost_at(&[], 1.0, |o| o.place), None);
+    fn exact_the_cheapest_run_that_is_as_good() {
+        let own = [run("a", 1e-2, 1.0, 1.0), run("b", 1e-3, 1e-2, 5.0), run("c", 1e-3, 1e-3, 9.0)];
+        let method = |tension, place| cheapest(&own, &Off { tension, place }).map(|run| run.method);
+        assert_eq!(method(1e-2, None), Some("a"));
+        assert_eq!(method(1e-2, Some(1e-2)), Some("b"));
+        assert_eq!(method(5e-3, Some(5e-3)), Some("c"));
+        assert_eq!(method(1e-4, Some(1.0)), None);
     }
 
     #[test]
-    fn exact_the_dearer_of_two_errors_counts() {
-        let curves =
-            [("a".to_owned(), vec![work(1e-2, 1.0, 1.0), work(1e-4, 1e-4, 100.0)]), ("b".to_owned(), vec![work(1e-3, 1e-5, 50.0)])];
-        let off = Off { tension: 1e-2, place: Some(1e-2) };
-        assert_eq!(cheapest(&curves, &off, false), Some(("a".to_owned(), 1.0)));
-        // By the place, a costs 10 and b 50.
-        let (method, cost) = cheapest(&curves, &off, true).unwrap();
-        assert!(method == "a" && (cost - 10.0).abs() < 1e-12, "{method} {cost}"); // rounding
-        assert_eq!(cheapest(&curves, &Off { tension: 1e-2, place: Some(2e-5) }, true), Some(("b".to_owned(), 50.0)));
-        assert_eq!(cheapest(&curves, &Off { tension: 1e-9, place: None }, true), None);
-    }
-
-    #[test]
-    fn exact_verdicts_go_by_the_finest_run() {
-        let point = |elements, cost, ours: Option<f64>| RivalPoint {
-            plan: Plan { program: Program::MoorDyn, case: "p4b", elements, step: 1e-3 },
-            work: Ok(work(6e-3, 1.0, cost)),
-            ours: ours.map(|cost| ("rodas4".to_owned(), cost)),
-        };
-        let (section, held) = section(&[point(10, 1.0, Some(1.0)), point(20, 6.0, Some(1.0))]);
-        assert_eq!(held, [1, 1]);
+    fn exact_every_run_of_theirs_has_a_row() {
+        let plan = Plan { program: Program::MoorDyn, case: "p4b", elements: 20, step: 1e-3 };
+        let ours = run("rodas4", 6e-3, 1.0, 0.5);
+        let points = [
+            RivalPoint { plan, work: Ok(Work { cost: 3.0, ..ours.work }), ours: Some(ours) },
+            RivalPoint { plan, work: Err("it broke".into()), ours: None },
+        ];
+        let section = section(&points);
         let super::super::section::Block::Table(header, rows) = &section.blocks[1] else { panic!("a table") };
-        assert_eq!((header.len(), rows[0].len()), (10, 10));
-        assert_eq!(rows[0][7..], ["1.0", "", ""].map(String::from));
-        assert_eq!(rows[1][7..], ["6.0", "5, at 0.60 %", "held"].map(String::from));
-        assert_eq!(super::section(&[point(20, 4.0, Some(1.0))]).1, [0, 1]);
-        assert_eq!(super::section(&[point(20, 4.0, None)]).1, [0, 0]);
+        assert!(rows.iter().all(|row| row.len() == header.len()));
+        assert_eq!(rows[0][6..], ["500.00, rodas4, 20 elements, 1e-3", "6.0"].map(String::from));
+        assert_eq!(rows[1][3..], ["left out: it broke", "", "", "", ""].map(String::from));
     }
 }

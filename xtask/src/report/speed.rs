@@ -6,11 +6,12 @@
 use super::bench::Bench;
 use super::cases::{Case, Place, cases};
 use super::cost;
-use super::real_time;
 use super::rival_runs::{Program, Rivals};
-use super::rivals::{self, RivalPoint, Work};
+use super::rivals::{self, OwnRun, RivalPoint, Work};
 use super::row::share;
 use super::section::{Section, csv, dotted};
+use super::targets::{self, Runs};
+use super::track::Off;
 use crate::demo;
 use crate::error::{Failure, Result};
 use crate::package::root;
@@ -33,78 +34,70 @@ pub struct Args {
 }
 
 const METHODS: [&str; 4] = ["rodas4", "tr_bdf2", "esdirk3", "esdirk4"];
-const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
+const TOLERANCES: [f64; 4] = [3e-2, 1e-2, 1e-3, 1e-4];
 /// Runs longer than this are not repeated, s.
 const LONG: f64 = 0.5;
 const REPEATS: usize = 3;
 
-/// What a run came to.
-struct Point {
-    method: usize,
-    elements: usize,
-    tolerance: f64,
-    work: Work,
-    sub_steps: f64,
-}
-
 /// What a case came to, ours and theirs.
 struct Measured {
-    points: Vec<Point>,
+    own: Vec<OwnRun>,
     theirs: Vec<RivalPoint>,
-    /// The line in the table of targets against real time.
-    target: Option<Vec<String>>,
 }
 
 fn measure(bench: &Bench, case: &Case, rivals: Option<&Rivals>) -> Result<Measured> {
     let truth = case.truth(bench)?;
-    let (mut points, mut curves) = (Vec::new(), Vec::new());
-    for (mesh, scene) in std::iter::once(&case.scene).chain(&case.coarser).enumerate() {
-        let elements = scene.element_count();
-        let tolerances = if mesh == 0 { &TOLERANCES[..] } else { &TOLERANCES[..2] };
-        for (method, name) in METHODS.iter().enumerate() {
-            let mut curve = Vec::new();
-            for &tolerance in tolerances {
-                let run = case.run(bench, scene, name, tolerance, REPEATS, LONG)?;
+    let mut own = Vec::new();
+    for scene in case.scenes() {
+        for method in METHODS {
+            for tolerance in TOLERANCES {
+                let run = case.run(bench, &scene, method, tolerance, REPEATS, LONG)?;
                 let off = run.track.off(&truth, case.from)?;
+                let work = Work { off, cost: run.seconds };
+                let point = OwnRun { method, elements: scene.element_count(), tolerance, work, sub_steps: run.sub_steps };
                 println!(
-                    "{:6} {elements:3} elements {name:8} {tolerance:7.0e}  error {:.1e}{}  {:8.1} ms  {:6.1} x real time  {:6} sub-steps",
+                    "{:6} {}  error {:.1e}{}  {:8.1} ms  {:6.1} x real time  {:6} sub-steps",
                     case.name,
+                    point.name(),
                     off.tension,
                     off.place.map_or(String::new(), |p| format!(", place {p:.1e}")),
                     1e3 * run.seconds,
                     case.end / run.seconds,
                     run.sub_steps
                 );
-                let work = Work { off, cost: run.seconds };
-                curve.push(work);
-                points.push(Point { method, elements, tolerance, work, sub_steps: run.sub_steps });
+                own.push(point);
             }
-            curves.push((format!("{name}, {elements} elements"), curve));
         }
     }
-    let theirs = rivals.map_or(Vec::new(), |rivals| rivals::measure(rivals, case, &truth, &curves, REPEATS, LONG));
-    Ok(Measured { points, theirs, target: real_time::line(case, &curves) })
+    let theirs = rivals.map_or(Vec::new(), |rivals| rivals::measure(rivals, case, &truth, &own, REPEATS, LONG));
+    Ok(Measured { own, theirs })
+}
+
+/// Work over an error: a line a method and mesh, the finest mesh's drawn through, and one a program.
+fn chart(case: &Case, measured: &Measured, label: &str, error: fn(&Off) -> Option<f64>) -> Chart {
+    let mut meshes: Vec<usize> = measured.own.iter().map(|run| run.elements).collect();
+    meshes.sort_unstable();
+    meshes.dedup();
+    let mut lines = Vec::new();
+    for n in &meshes {
+        for (m, method) in METHODS.iter().enumerate() {
+            let of = measured.own.iter().filter(|run| run.method == *method && run.elements == *n);
+            let errors = of.filter_map(|run| Some((error(&run.work.off).filter(|e| *e > 0.0)?, run.work.cost)));
+            let points = errors.map(|(e, cost)| (e.log10(), (case.end / cost).log10())).collect();
+            let line = Series { points, ..Series::new(&format!("{method}, {n}"), &[], &[], PALETTE[m]) };
+            lines.push(if meshes.last() == Some(n) { line } else { line.dashed().width(1.0) });
+        }
+    }
+    lines.extend(rivals::series(case, &measured.theirs, error));
+    Chart::new(case.what, label, vec![dotted(Panel::new("log10 of simulated time over run time", lines).height(300.0))])
 }
 
 /// The case's part of the page.
 fn section(case: &Case, measured: &Measured) -> Section {
-    let Measured { points, theirs, .. } = measured;
-    let finest = case.scene.element_count();
-    let lines = METHODS.iter().enumerate().map(|(m, name)| {
-        let of = points.iter().filter(|p| p.method == m && p.elements == finest && p.work.off.tension > 0.0);
-        let points = of.map(|p| (p.work.off.tension.log10(), (case.end / p.work.cost).log10())).collect();
-        Series { points, ..Series::new(name, &[], &[], PALETTE[m]) }
-    });
-    let lines = lines.chain(rivals::series(case, theirs)).collect();
-    let chart = Chart::new(
-        case.what,
-        "log10 of the tension's rms error over its rms",
-        vec![dotted(Panel::new("log10 of simulated time over run time", lines).height(300.0))],
-    );
-    let rows = points.iter().map(|p| {
+    let rows = measured.own.iter().map(|p| {
         vec![
-            format!("{}, {} elements", METHODS[p.method], p.elements),
-            format!("{:.0e}", p.tolerance),
+            p.method.to_owned(),
+            format!("{} elements, {:.0e}", p.elements, p.tolerance),
             share(p.work.off.tension),
             rivals::place(p.work.off.place),
             format!("{:.1}", 1e3 * p.work.cost),
@@ -112,19 +105,22 @@ fn section(case: &Case, measured: &Measured) -> Section {
             p.sub_steps.to_string(),
         ]
     });
-    let rows = rows.chain(rivals::rows(case, theirs)).collect();
-    let place = match case.place {
-        Place::Point(_) => "Place error, m",
-        Place::Chord(_) => "Wrap error, rad",
+    let rows = rows.chain(rivals::rows(case, &measured.theirs)).collect();
+    let (place, axis) = match case.place {
+        Place::Point(_) => ("Place error, m", "log10 of the body's rms distance from its true place, m"),
+        Place::Chord(_) => ("Wrap error, rad", "log10 of the wrap angle's rms error, rad"),
     };
+    let tension = chart(case, measured, "log10 of the tension's rms error over its rms", |off| Some(off.tension));
     Section::new(case.what)
         .text(format!("{} Communication steps of {} ms, {} s.", case.truth_in_words(), 1e3 * case.step, case.end))
         .chart(
             case.name,
-            chart,
-            "Right is worse, up is faster; each line from tolerance 1e-2 to 1e-5 on the finest mesh, other programs' from coarse to fine.",
+            tension,
+            "Right is worse, up is faster; each line from tolerance 3e-2 to 1e-4 (dashed on the coarser meshes), other programs' from coarse to \
+             fine.",
         )
-        .table(&["Method", "Tolerance", "Tension error", place, "Run, ms", "Times real time", "Sub-steps"], rows)
+        .chart(&format!("{}-place", case.name), chart(case, measured, axis, |off| off.place), "The same over the error of place.")
+        .table(&["Method", "Mesh, tolerance or step", "Tension error", place, "Run, ms", "Times real time", "Sub-steps"], rows)
 }
 
 /// Runs the command.
@@ -148,34 +144,26 @@ pub fn bench(args: Args) -> Result<()> {
     let machine = demo::machine();
     println!("{machine}; one thread");
     let mut sections = Vec::new();
-    let (mut theirs, mut targets) = (Vec::new(), Vec::new());
-    let mut numbers: [Vec<f64>; 8] = Default::default();
-    for (k, case) in chosen.iter().enumerate() {
+    let mut all_measured = Vec::new();
+    for case in &chosen {
         let measured = measure(&bench, case, rivals.as_ref())?;
-        for p in &measured.points {
-            let place = p.work.off.place.unwrap_or(f64::NAN);
-            let row = [k as f64, p.method as f64, p.elements as f64, p.tolerance, p.work.off.tension, place, p.work.cost, p.sub_steps];
-            numbers.iter_mut().zip(row).for_each(|(column, x)| column.push(x));
-        }
         sections.push(section(case, &measured));
-        theirs.extend(measured.theirs);
-        targets.extend(measured.target);
-    }
-    if !targets.is_empty() {
-        sections.insert(0, real_time::section(targets));
+        all_measured.push(measured);
     }
     let names: Vec<_> = chosen.iter().map(|c| c.name).collect();
+    let work = work(&all_measured);
+    let runs: Vec<Runs> =
+        chosen.iter().zip(&all_measured).map(|(c, m)| Runs { case: c.name, end: c.end, own: &m.own, theirs: &m.theirs }).collect();
+    let mut first = vec![targets::section(&runs)];
+    drop(runs);
     if rivals.is_some() {
-        let (section, [held, of]) = rivals::section(&theirs);
-        println!("{held} of {of} targets against other programs held");
-        let header = format!(
-            "scene ({}),program ({}),elements,step,tension_error,place_error,seconds",
-            names.join(" "),
-            Program::ALL.map(Program::name).join(" ")
-        );
+        let theirs: Vec<RivalPoint> = all_measured.into_iter().flat_map(|m| m.theirs).collect();
+        let programs = Program::ALL.map(Program::name).join(" ");
+        let header = format!("scene ({}),program ({programs}),elements,step,tension_error,place_error,seconds", names.join(" "));
         let columns = rivals::numbers(&theirs, &names);
-        sections.insert(0, section.csv("peers", &header, &columns.each_ref().map(Vec::as_slice), "every run of theirs"));
+        first.push(rivals::section(&theirs).csv("peers", &header, &columns.each_ref().map(Vec::as_slice), "every run of theirs"));
     }
+    sections.splice(0..0, first);
     if costs {
         sections.extend(cost::sections(&bench)?);
     }
@@ -183,7 +171,7 @@ pub fn bench(args: Args) -> Result<()> {
         return Ok(());
     }
     let folder = root().join("fmu-tests").join("bench");
-    let columns: Vec<&[f64]> = numbers.iter().map(Vec::as_slice).collect();
+    let columns: Vec<&[f64]> = work.iter().map(Vec::as_slice).collect();
     let header = format!(
         "scene ({}),method ({}),elements,tolerance,tension_error,place_error,seconds,sub_steps",
         names.join(" "),
@@ -192,4 +180,17 @@ pub fn bench(args: Args) -> Result<()> {
     super::page::write_speed(&sections, &machine, rivals.is_some(), &csv(&header, &columns), &folder)?;
     println!("{}", crate::results::shown(&folder.join("index.html")));
     Ok(())
+}
+
+/// Numbers for work.csv: every run of ours, scene and method by their places in the header.
+fn work(all: &[Measured]) -> [Vec<f64>; 8] {
+    let mut columns: [Vec<f64>; 8] = Default::default();
+    for (k, run) in all.iter().enumerate().flat_map(|(k, m)| m.own.iter().map(move |run| (k, run))) {
+        let method = METHODS.iter().position(|m| *m == run.method).unwrap_or_default();
+        let Off { tension, place } = run.work.off;
+        let place = place.unwrap_or(f64::NAN);
+        let row = [k as f64, method as f64, run.elements as f64, run.tolerance, tension, place, run.work.cost, run.sub_steps];
+        columns.iter_mut().zip(row).for_each(|(column, x)| column.push(x));
+    }
+    columns
 }
