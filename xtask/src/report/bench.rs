@@ -127,8 +127,10 @@ pub struct Record<const N: usize> {
     pub columns: [Vec<f64>; N],
     /// What the communication loop took of this thread's processor time, s.
     pub seconds: f64,
-    /// The solver's sub-steps.
+    /// The solver's sub-steps, and its linear solves.
     pub sub_steps: f64,
+    /// See `sub_steps`.
+    pub iterations: f64,
 }
 
 /// Runs an FMU and records outputs.
@@ -141,7 +143,8 @@ pub fn record<const N: usize>(fmu: &Fmu, drive: &Drive, outputs: [&str; N]) -> R
     let reference = |name: &&str| Ok(fmu.description.variable(name)?.reference);
     let inputs = drive.inputs.iter().map(reference).collect::<Result<Vec<_>>>()?;
     let references = outputs.iter().map(reference).collect::<Result<Vec<_>>>()?;
-    let mut record = Record { times: Vec::new(), columns: std::array::from_fn(|_| Vec::new()), seconds: 0.0, sub_steps: 0.0 };
+    let mut record =
+        Record { times: Vec::new(), columns: std::array::from_fn(|_| Vec::new()), seconds: 0.0, sub_steps: 0.0, iterations: 0.0 };
     let mut row = [f64::NAN; N];
     let mut push = |time: f64, instance: &Instance| -> Result<()> {
         instance.get_reals(&references, &mut row)?;
@@ -159,6 +162,7 @@ pub fn record<const N: usize>(fmu: &Fmu, drive: &Drive, outputs: [&str; N]) -> R
     }
     record.seconds = cpu_seconds() - clock;
     record.sub_steps = instance.get("solver.steps")?;
+    record.iterations = instance.get("solver.iterations")?;
     instance.terminate()?;
     Ok(record)
 }

@@ -32,15 +32,26 @@ fn least(mut of: impl FnMut() -> Result<f64>) -> Result<f64> {
     (0..REPEATS).try_fold(f64::INFINITY, |least, _| Ok(of()?.min(least)))
 }
 
+/// Deep water.
+fn fluid() -> Result<toml::Table> {
+    let text = "density = 1025\nwaterline = 1\ndrag = { law = \"cross_flow\", cd_normal = 1.2, cd_tangential = 0.01 }\n";
+    text.parse().map_err(|e| Failure(format!("the table of water: {e}")))
+}
+
 /// Cost of an iteration over the number of elements.
 fn elements(bench: &Bench) -> Result<Section> {
-    let water = "[fluid]\ndensity = 1025\nwaterline = 1\ndrag = { law = \"cross_flow\", cd_normal = 1.2, cd_tangential = 0.01 }\n";
     let rows = ["in vacuum", "in water"].map(|medium| -> Result<Vec<f64>> {
-        let rest = if medium == "in water" { format!("{HEAVED}{water}") } else { HEAVED.to_owned() };
         ELEMENTS
             .iter()
             .map(|&n| {
-                let scene = HEAVY_WIRE.scene(G, n, 0, &rest)?.with("solver.method", "tr_bdf2").with("solver.tolerance", 1e-2);
+                let mut scene = HEAVY_WIRE.scene(G, n, 0, HEAVED)?.with("solver.method", "tr_bdf2").with("solver.tolerance", 1e-2);
+                if medium == "in water" {
+                    scene = scene
+                        .with("fluid", fluid()?)
+                        .with("body.volume", 0.06)
+                        .with("body.drag_area", 0.2)
+                        .with("body.drag_coefficient", 0.5);
+                }
                 let fmu = bench.pack(&scene)?;
                 // Long enough for the clock, short enough for thousands of elements.
                 let steps = (60_000 / n).clamp(30, 2000);
@@ -48,8 +59,8 @@ fn elements(bench: &Bench) -> Result<Section> {
                 let drive = Drive { inputs: &["ship.z", "ship.vz", "ship.az"], at: &at, ..Drive::still(0.01, 0.01 * steps as f64) };
                 let mut iterations = 0.0;
                 let seconds = least(|| {
-                    let run = record(&fmu, &drive, ["solver.iterations"])?;
-                    iterations = run.columns[0][run.columns[0].len() - 1];
+                    let run = record(&fmu, &drive, ["anchor.tension"])?;
+                    iterations = run.iterations;
                     Ok(run.seconds)
                 })?;
                 let cost = 1e9 * seconds / (iterations * n as f64);
@@ -117,8 +128,8 @@ fn parts(bench: &Bench) -> Result<Section> {
         let drive = Drive { inputs: sea, at: &*waves, ..Drive::still(0.01, 10.0) };
         let mut work = [0.0; 2];
         let seconds = least(|| {
-            let run = record(&fmu, &drive, ["solver.iterations"])?;
-            work = [run.sub_steps, run.columns[0][run.columns[0].len() - 1]];
+            let run = record(&fmu, &drive, ["winch.tension"])?;
+            work = [run.sub_steps, run.iterations];
             Ok(run.seconds)
         })?;
         let per = 1e6 * seconds / work[1];

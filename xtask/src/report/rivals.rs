@@ -34,7 +34,13 @@ pub struct OwnRun {
 impl OwnRun {
     /// Method, mesh and tolerance in words.
     pub fn name(&self) -> String {
-        format!("{}, {} elements, {:.0e}", self.method, self.elements, self.tolerance)
+        format!("{}, {}", self.method, self.mesh_and_tolerance())
+    }
+
+    /// A mesh that is graded for an error has no number of elements in its scene.
+    pub fn mesh_and_tolerance(&self) -> String {
+        let mesh = if self.elements > 0 { format!("{} elements", self.elements) } else { "graded mesh".into() };
+        format!("{mesh}, {:.0e}", self.tolerance)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Rain-flow counting of load cycles and of the levels that a load exceeds.
 //!
-//! Written here: crates.io has no well-kept counter with a release and users, the rule is thirty lines, and the standard brings its own example
+//! Written here: no counter was found in Rust that is released, kept and used; the rule is thirty lines, and the standard brings its own example
 //! to test it by.
 
 /// One closed loop or half of one.
