@@ -37,20 +37,38 @@ pub(super) struct Settings {
 /// The variables with their values.
 pub(super) struct Table {
     model: Model,
-    /// Position of a variable by kind and value reference, sorted.
-    positions: Vec<(Kind, ValueReference, usize)>,
+    /// Position of a variable by the halves of its value reference, [`NOWHERE`] where there is none.
+    positions: Vec<Vec<usize>>,
     values: Vec<Value>,
     inputs: Vec<InputRow>,
     /// What the pointers given out by fmi2GetString point to, by variable.
     texts: BTreeMap<usize, CString>,
 }
 
+/// No variable.
+const NOWHERE: usize = usize::MAX;
+
+/// Upper and lower half of a value reference: what it is, and which of several.
+fn halves(reference: ValueReference) -> [usize; 2] {
+    [(reference >> 16) as usize, (reference & 0xffff) as usize]
+}
+
 impl Table {
     /// All variables at their start values, outputs at zero.
     pub fn new(model: Model) -> Self {
         let variables = || model.variables.iter().enumerate();
-        let mut positions: Vec<_> = variables().map(|(at, variable)| (variable.kind, variable.reference, at)).collect();
-        positions.sort_unstable();
+        let mut positions: Vec<Vec<usize>> = Vec::new();
+        for (at, variable) in variables() {
+            let [upper, lower] = halves(variable.reference);
+            if positions.len() <= upper {
+                positions.resize_with(upper + 1, Vec::new);
+            }
+            let row = &mut positions[upper];
+            if row.len() <= lower {
+                row.resize(lower + 1, NOWHERE);
+            }
+            row[lower] = at;
+        }
         let inputs = variables()
             .filter_map(|(variable, row)| match row.quantity {
                 Quantity::Input(input) => Some(InputRow { input, variable, derivatives: [None; 2], expired: [None; 2] }),
@@ -74,10 +92,10 @@ impl Table {
     }
 
     fn find(&self, kind: Kind, reference: ValueReference) -> Result<usize, Trouble> {
-        self.positions
-            .binary_search_by_key(&(kind, reference), |&(kind, reference, _)| (kind, reference))
-            .map(|at| self.positions[at].2)
-            .map_err(|_| error(format!("there is no {kind:?} variable with value reference {reference}")))
+        let [upper, lower] = halves(reference);
+        let at = self.positions.get(upper).and_then(|row| row.get(lower)).copied().unwrap_or(NOWHERE);
+        let found = self.model.variables.get(at).is_some_and(|variable| variable.kind == kind);
+        if found { Ok(at) } else { Err(error(format!("there is no {kind:?} variable with value reference {reference}"))) }
     }
 
     /// Whether any of the variables is an output, so that there must be a state to read it from.

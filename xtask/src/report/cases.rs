@@ -296,7 +296,7 @@ fn pendulum() -> Result<Case> {
         meshes: &[20, 32, 40],
         tension: "load.tension",
         place: Place::Chord(["cable.point[2].x", "cable.point[2].z", "cable.point[3].x", "cable.point[3].z"]),
-        step: 0.004,
+        step: 0.002,
         end: 1.0,
         from: 0.0,
         inputs: &[],
