@@ -7,7 +7,7 @@
 //!
 //! by Newton's method with the factors of M + g D + g² K, kept from step to step for as long as it converges fast enough.
 
-use super::newton::{Outcome, Progress};
+use super::newton::{Outcome, Progress, SLOW};
 use super::tableau::Tableau;
 use super::vectors::{add, blend, dot};
 use super::{Integrator, Problem, Trial};
@@ -16,8 +16,6 @@ use crate::system::Matrices;
 
 /// A step's length may change so much before the matrix is factored anew.
 const SAME_STEP: f64 = 0.02;
-/// A slower rate of convergence asks for a new tangent.
-const SLOW: f64 = 0.1;
 /// Tangents that a try may take where Newton's method stalls.
 const RENEWALS: usize = 3;
 

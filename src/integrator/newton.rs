@@ -7,6 +7,8 @@ const KAPPA: f64 = 0.05;
 const MOST: usize = 8;
 /// A method that converges slower does not converge.
 const HOPELESS: f64 = 0.9;
+/// A slower rate of convergence asks for a new tangent.
+pub const SLOW: f64 = 0.1;
 
 /// How a stage ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,8 +36,10 @@ pub struct Progress {
 impl Progress {
     /// A stage begins; earlier ones converged at `rate`, 0 if there were none with these factors.
     pub fn new(rate: f64) -> Self {
-        // An old rate is worth less than a new one.
-        Self { count: 0, rate: rate.powf(0.8), most: MOST, last: f64::INFINITY }
+        // An old rate is worth less than a new one; once it is worth nothing it is measured anew.
+        let guess = rate.powf(0.8);
+        let rate = if rate <= SLOW && guess > SLOW { 0.0 } else { guess };
+        Self { count: 0, rate, most: MOST, last: f64::INFINITY }
     }
 
     /// With another limit.

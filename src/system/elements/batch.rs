@@ -74,7 +74,19 @@ pub struct Batch {
 /// What the tangent needs of a Gauss point, of elements side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slopes {
-    /// Weighted derivatives of the resistance by ξ-derivatives.
+    /// Of the section.
+    pub section: SectionSlopes,
+    /// Weighted derivatives of the fluid force.
+    pub dz: Rows3,
+    pub dv: Rows33,
+    pub dp: Rows33,
+    pub mass: Rows33,
+}
+
+/// Derivatives of the section's forces by ξ-derivatives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SectionSlopes {
+    /// Weighted derivatives of the resistance.
     pub k_pp: Rows33,
     pub k_pq: Rows33,
     pub k_qp: Rows33,
@@ -85,29 +97,24 @@ pub struct Slopes {
     pub c_bending: Row,
     pub e2: Rows3,
     pub e1: Rows3,
-    /// Weighted derivatives of the fluid force.
-    pub dz: Rows3,
-    pub dv: Rows33,
-    pub dp: Rows33,
-    pub mass: Rows33,
 }
 
 pub const NONE: Rows33 = [Row::ZERO; 9];
-pub const STILL: Slopes = Slopes {
-    k_pp: NONE,
-    k_pq: NONE,
-    k_qp: NONE,
-    k_qq: NONE,
-    c_axial: Row::ZERO,
-    g: [Row::ZERO; 3],
-    c_bending: Row::ZERO,
-    e2: [Row::ZERO; 3],
-    e1: [Row::ZERO; 3],
-    dz: [Row::ZERO; 3],
-    dv: NONE,
-    dp: NONE,
-    mass: NONE,
-};
+pub const STILL: Slopes = Slopes { section: SectionSlopes::NONE, dz: [Row::ZERO; 3], dv: NONE, dp: NONE, mass: NONE };
+
+impl SectionSlopes {
+    pub const NONE: Self = Self {
+        k_pp: NONE,
+        k_pq: NONE,
+        k_qp: NONE,
+        k_qq: NONE,
+        c_axial: Row::ZERO,
+        g: [Row::ZERO; 3],
+        c_bending: Row::ZERO,
+        e2: [Row::ZERO; 3],
+        e1: [Row::ZERO; 3],
+    };
+}
 
 /// Lane `l` of Σ s_i q_i.
 #[inline(always)]

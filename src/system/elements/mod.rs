@@ -15,7 +15,7 @@ use crate::hydro::line::LineInWater;
 use crate::integrator::Stage;
 use crate::math::lanes::{Kernel, Vec3, axpy, lane, scale, set_lane, widest};
 use crate::math::quadrature::GAUSS3;
-use batch::{Batch, LANES, Row, Rows3, STILL, Slopes, Station, along, gather_lane, spans};
+use batch::{Batch, LANES, Row, Rows3, STILL, SectionSlopes, Slopes, Station, along, gather_lane, spans};
 pub use tangent::{Each, ElementTangents};
 use water::immerse;
 
@@ -363,7 +363,7 @@ impl Chain {
         let anew = if matches!(axially, Axially::Law) { 1.0 } else { 0.0 };
         // Copies, since only of what is its own does the compiler know that nothing else changes it.
         let known = *axial;
-        let (mut begun, mut next) = (known, Row::ZERO);
+        let (mut begun, mut next, mut own) = (known, Row::ZERO, SectionSlopes::NONE);
         for l in 0..LANES {
             let i = batch.inverse.0[l];
             let (u, w) = (spans(&batch.u, l), spans(&batch.w, l));
@@ -391,18 +391,19 @@ impl Chain {
             if TANGENT {
                 let x = weight * i;
                 let flat = |s: f64, m: &[[f64; 3]; 3]| -> [f64; 9] { std::array::from_fn(|k| s * m[k / 3][k % 3]) };
-                set_lane(&mut slopes.k_pp, l, flat(x, &r.k_pp));
-                set_lane(&mut slopes.k_pq, l, flat(x * i, &r.k_pq));
-                set_lane(&mut slopes.k_qp, l, flat(x * i, &r.k_qp));
-                set_lane(&mut slopes.k_qq, l, flat(x * i * i, &r.k_qq));
-                slopes.c_axial.0[l] = x * r.c_axial;
-                set_lane(&mut slopes.g, l, r.g);
-                slopes.c_bending.0[l] = x * r.c_bending;
-                set_lane(&mut slopes.e2, l, r.e2);
-                set_lane(&mut slopes.e1, l, scale(i, &r.e1));
+                set_lane(&mut own.k_pp, l, flat(x, &r.k_pp));
+                set_lane(&mut own.k_pq, l, flat(x * i, &r.k_pq));
+                set_lane(&mut own.k_qp, l, flat(x * i, &r.k_qp));
+                set_lane(&mut own.k_qq, l, flat(x * i * i, &r.k_qq));
+                own.c_axial.0[l] = x * r.c_axial;
+                set_lane(&mut own.g, l, r.g);
+                own.c_bending.0[l] = x * r.c_bending;
+                set_lane(&mut own.e2, l, r.e2);
+                set_lane(&mut own.e1, l, scale(i, &r.e1));
             }
         }
         if TANGENT {
+            slopes.section = own;
             *axial = begun;
         }
         if OF == STAGE {

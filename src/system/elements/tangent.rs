@@ -123,7 +123,7 @@ impl Group {
         let [_, wd, wk] = factors;
         let rc = 3 * r + c;
         let mut on = [[Row::ZERO; SPANS]; SPANS];
-        for (at, Station { b, d, weight, .. }) in self.points.iter().zip(stations) {
+        for (Slopes { section: at, .. }, Station { b, d, weight, .. }) in self.points.iter().zip(stations) {
             for l in 0..LANES {
                 let axial = wd * at.c_axial.0[l] * at.g[r].0[l];
                 let bending = wd * at.c_bending.0[l];
@@ -339,7 +339,7 @@ impl Group {
     #[inline(always)]
     fn damp(&self, stations: &[Station; 3], gradient_damping: f64, w: &[Rows3; 4], f: &mut [Rows3; 4]) {
         let mut sum = *f;
-        for (at, station) in self.points.iter().zip(stations) {
+        for (Slopes { section: at, .. }, station) in self.points.iter().zip(stations) {
             for l in 0..LANES {
                 let (vp, vpp) = (derivative(&station.b, w, l), derivative(&station.d, w, l));
                 let (g, e2, e1) = (lane(&at.g, l), lane(&at.e2, l), lane(&at.e1, l));
@@ -366,7 +366,7 @@ impl Group {
     #[inline(always)]
     fn stretch(&self, stations: &[Station; 3], u: &[Rows3; 4], f: &mut [Rows3; 4]) {
         let mut sum = *f;
-        for (at, station) in self.points.iter().zip(stations) {
+        for (Slopes { section: at, .. }, station) in self.points.iter().zip(stations) {
             for l in 0..LANES {
                 let (p, pp) = (derivative(&station.b, u, l), derivative(&station.d, u, l));
                 let (np, nq) = (times(&at.k_pp, &p, l), times(&at.k_pq, &pp, l));
