@@ -175,28 +175,38 @@ impl Section {
     /// Resisting forces at a point; derivatives only with `TANGENT`.
     #[inline(always)]
     pub fn resistance<const TANGENT: bool>(&self, s: &Strains) -> Resistance {
-        self.resistance_carrying::<TANGENT>(s, 1.0, 0.0)
+        self.resistance_carrying::<TANGENT, true>(s, 1.0, 0.0)
     }
 
-    /// The same, but the derivatives are those of a cable whose axial force is `share` of what the law gives and `other` (N).
+    /// The same, but the derivatives are those of a cable whose axial force is `share` of what the law gives and `other` (N). Without
+    /// `BENDING_RATE`, for sections without bending damping, what needs the curvature's rate is left out: the bending energy's.
     #[inline(always)]
-    pub fn resistance_carrying<const TANGENT: bool>(&self, s: &Strains, share: f64, other: f64) -> Resistance {
+    pub fn resistance_carrying<const TANGENT: bool, const BENDING_RATE: bool>(&self, s: &Strains, share: f64, other: f64) -> Resistance {
         let mut out = Resistance::zero();
-        self.axial::<TANGENT>(s, share, other, &mut out);
+        let inverse = self.axial::<TANGENT>(s, share, other, &mut out);
         if self.bends() {
-            self.bending::<TANGENT>(s, &mut out);
+            self.bending::<TANGENT, BENDING_RATE>(s, inverse, &mut out);
         }
         out.n = axpy(&out.n, self.gradient_damping, &s.vp);
         out
     }
 
-    /// n = N g with g = ∂ε/∂r_p.
+    /// The axial part alone.
     #[inline(always)]
-    fn axial<const TANGENT: bool>(&self, s: &Strains, share: f64, other: f64, out: &mut Resistance) {
+    pub fn tension(&self, s: &Strains) -> Resistance {
+        let mut out = Resistance::zero();
+        self.axial::<false>(s, 1.0, 0.0, &mut out);
+        out
+    }
+
+    /// n = N g with g = ∂ε/∂r_p; gives 1/λ².
+    #[inline(always)]
+    fn axial<const TANGENT: bool>(&self, s: &Strains, share: f64, other: f64, out: &mut Resistance) -> f64 {
         let l2 = dot(&s.p, &s.p);
         // g = r_p/λ or r_p; ∂g/∂r_p = c (I − b g gᵀ).
         let l = l2.sqrt();
-        let (eps, c, b) = if self.green { ((l2 - 1.0) * 0.5, 1.0, 0.0) } else { (l - 1.0, 1.0 / l, 1.0) };
+        let inverse = 1.0 / l;
+        let (eps, c, b) = if self.green { ((l2 - 1.0) * 0.5, 1.0, 0.0) } else { (l - 1.0, inverse, 1.0) };
         let g = scale(c, &s.p);
         let taut = if self.tension_only && eps <= 0.0 { 0.0 } else { 1.0 };
         let damped = if self.damp_in_slack { 1.0 } else { taut };
@@ -216,14 +226,14 @@ impl Section {
             add_outer(&mut out.k_pp, 1.0, &g, &axpy(&out.by_p, -turn * b, &g));
             add_identity(&mut out.k_pp, turn);
         }
+        inverse * inverse
     }
 
-    /// With κ² = G λ^(−2m), G = ‖r_p × r_pp‖², and (e2, e1) = ½ ∂κ²/∂(r_p, r_pp): n = B e2, m = B e1, B = EI + c_b β̇/β.
+    /// With κ² = G λ^(−2m), G = ‖r_p × r_pp‖², and (e2, e1) = ½ ∂κ²/∂(r_p, r_pp): n = B e2, m = B e1, B = EI + c_b β̇/β; `i`: 1/λ².
     #[inline(always)]
-    fn bending<const TANGENT: bool>(&self, s: &Strains, out: &mut Resistance) {
+    fn bending<const TANGENT: bool, const BENDING_RATE: bool>(&self, s: &Strains, i: f64, out: &mut Resistance) {
         let m = if self.green { 3.0 } else { 2.0 };
         let (l, a, b) = (dot(&s.p, &s.p), dot(&s.pp, &s.pp), dot(&s.p, &s.pp));
-        let i = 1.0 / l;
         let pw = i * i * if self.green { i } else { 1.0 };
         let k2 = (l * a - b * b).max(0.0) * pw; // κ²
         // d1 = l r_pp − b r_p, d2 = a r_p − b r_pp.
@@ -231,13 +241,18 @@ impl Section {
         let d2 = axpy(&scale(a, &s.p), -b, &s.pp);
         let e1 = scale(pw, &d1);
         let e2 = axpy(&scale(pw, &d2), -(k2 * i * m), &s.p);
+        out.energy += k2 * (0.5 * self.ei);
+        if !BENDING_RATE && !TANGENT {
+            out.n = axpy(&out.n, self.ei, &e2);
+            out.m = scale(self.ei, &e1);
+            return;
+        }
         let rate = dot(&e1, &s.vpp) + dot(&e2, &s.vp); // κκ̇ = ββ̇
         let ib2 = 1.0 / (k2 + self.straight_curvature * self.straight_curvature);
         let cb = ib2 * self.bending_damping; // c_b/β²
         let stiffness = self.ei + cb * rate;
         out.n = axpy(&out.n, stiffness, &e2);
         out.m = scale(stiffness, &e1);
-        out.energy += k2 * (0.5 * self.ei);
         out.power += rate * self.ei;
         if TANGENT {
             // H = ∂(e2, e1)/∂(r_p, r_pp); h12 = ∂e1/∂r_p, its transpose ∂e2/∂r_pp.

@@ -9,7 +9,7 @@
 
 use super::newton::{Outcome, Progress, SLOW};
 use super::tableau::Tableau;
-use super::vectors::{add, blend, dot};
+use super::vectors::{add, blend, climb, long_dot};
 use super::{Integrator, Problem, Trial};
 use crate::linalg::Bordered;
 use crate::system::Matrices;
@@ -95,7 +95,7 @@ impl Esdirk {
     fn renew<P: Problem>(&mut self, problem: &mut P, i: usize, t: f64, g: f64) -> bool {
         self.renewals -= 1;
         let mut at = std::mem::take(&mut self.origin);
-        step(&mut self.stage, &self.base, &self.a[i], g);
+        climb(&mut self.stage, &self.base, &self.a[i], g);
         problem.settle(&self.stage[0], &self.stage[1]);
         for (at, here) in at.iter_mut().zip([&self.stage[0], &self.stage[1], &self.a[i]]) {
             at.copy_from_slice(here);
@@ -113,14 +113,14 @@ impl Esdirk {
         let mut progress = Progress::new(self.rate);
         let outcome = loop {
             let a = &mut self.a[i];
-            step(&mut self.stage, &self.base, a, g);
+            climb(&mut self.stage, &self.base, a, g);
             problem.iterate(progress.count == 0, t, &self.stage[0], &self.stage[1], a, &mut self.residual);
             self.counts[0] += 1;
             self.change.copy_from_slice(&self.residual);
             self.factors.solve(&mut self.change);
             add(a, 1.0, &self.change);
             // The energy norm of the change of (u, w), so that axial waves and stiff contact count by what they pull.
-            let size = problem.size_of(g * g * dot(&self.change, &self.residual).abs());
+            let size = problem.size_of(g * g * long_dot(&self.change, &self.residual).abs());
             match progress.judge(size) {
                 Some(Outcome::Stalled) if self.renewals > 0 && self.renew(problem, i, t, g) => progress = Progress::new(0.0),
                 Some(outcome) => break outcome,
@@ -128,7 +128,7 @@ impl Esdirk {
             }
         };
         self.rate = progress.rate;
-        step(&mut self.stage, &self.base, &self.a[i], g);
+        climb(&mut self.stage, &self.base, &self.a[i], g);
         self.w[i].copy_from_slice(&self.stage[1]);
         problem.settle(&self.stage[0], &self.stage[1]);
         outcome
@@ -150,14 +150,6 @@ impl Esdirk {
             }
         }
         Outcome::Converged
-    }
-}
-
-/// w = base + g a, u = base + g w.
-fn step([u, w]: &mut [Vec<f64>; 2], base: &[Vec<f64>; 2], a: &[f64], g: f64) {
-    for (((u, w), (bu, bw)), a) in u.iter_mut().zip(w).zip(base[0].iter().zip(&base[1])).zip(a) {
-        *w = bw + g * a;
-        *u = bu + g * *w;
     }
 }
 

@@ -45,12 +45,81 @@ impl Kernel for Blend<'_> {
 
 /// y += s x.
 pub fn add(y: &mut [f64], s: f64, x: &[f64]) {
-    for (y, x) in y.iter_mut().zip(x) {
-        *y += s * x;
+    widest(Add { y, s, x });
+}
+
+struct Add<'a> {
+    y: &'a mut [f64],
+    s: f64,
+    x: &'a [f64],
+}
+
+impl Kernel for Add<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for (y, x) in self.y.iter_mut().zip(self.x) {
+            *y += self.s * x;
+        }
     }
 }
 
 /// Σ x_k y_k.
 pub fn dot(x: &[f64], y: &[f64]) -> f64 {
     x.iter().zip(y).map(|(x, y)| x * y).sum()
+}
+
+/// The same in eight sums side by side.
+pub fn long_dot(x: &[f64], y: &[f64]) -> f64 {
+    widest(LongDot { x, y })
+}
+
+struct LongDot<'a> {
+    x: &'a [f64],
+    y: &'a [f64],
+}
+
+impl Kernel for LongDot<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run(self) -> f64 {
+        let mut sums = [0.0; 8];
+        let (x, y) = (self.x.chunks_exact(8), self.y.chunks_exact(8));
+        let rest = dot(x.remainder(), y.remainder());
+        for (x, y) in x.zip(y) {
+            for l in 0..8 {
+                sums[l] += x[l] * y[l];
+            }
+        }
+        sums.iter().sum::<f64>() + rest
+    }
+}
+
+/// w = base_w + g a, u = base_u + g w.
+pub fn climb([u, w]: &mut [Vec<f64>; 2], [base_u, base_w]: &[Vec<f64>; 2], a: &[f64], g: f64) {
+    widest(Climb { u, w, base_u, base_w, a, g });
+}
+
+struct Climb<'a> {
+    u: &'a mut [f64],
+    w: &'a mut [f64],
+    base_u: &'a [f64],
+    base_w: &'a [f64],
+    a: &'a [f64],
+    g: f64,
+}
+
+impl Kernel for Climb<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { u, w, base_u, base_w, a, g } = self;
+        for (((u, w), (base_u, base_w)), a) in u.iter_mut().zip(w).zip(base_u.iter().zip(base_w)).zip(a) {
+            *w = base_w + g * a;
+            *u = base_u + g * *w;
+        }
+    }
 }

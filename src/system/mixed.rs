@@ -166,9 +166,9 @@ impl<const W: usize> AxialUnknown<W> {
         self.now = self.kept;
     }
 
-    /// The step ends with element `l` in the shape `s`, where the law gives `r`; its weights were entered as a stage's.
+    /// N at the step's end with element `l` in the shape `s`, where the law gives `r`; its weights were entered as a stage's.
     #[inline(always)]
-    pub fn end(&mut self, l: usize, r: &Resistance, s: &Strains) {
-        self.now.0[l] = if r.ea == self.ea.0[l] && r.ea > 0.0 { self.carried(l, s) } else { r.axial };
+    pub fn end(&self, l: usize, r: &Resistance, s: &Strains) -> f64 {
+        if r.ea == self.ea.0[l] && r.ea > 0.0 { self.carried(l, s) } else { r.axial }
     }
 }

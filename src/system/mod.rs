@@ -322,14 +322,9 @@ impl System {
         if self.chain.water.is_some() {
             self.cut::<TANGENT>(env, u, w, a, m);
         }
+        nodal_sums(&self.forces, f);
         if !self.surfaces.is_empty() {
-            self.contact::<TANGENT>(env, u, w, m);
-        }
-        f.fill(0.0);
-        for (e, (q, c)) in self.forces.iter().zip(&self.contact_forces).enumerate() {
-            for (f, (q, c)) in f[6 * e..6 * e + 12].iter_mut().zip(q.iter().zip(c)) {
-                *f += q + c;
-            }
+            self.contact::<TANGENT>(env, u, w, f, m);
         }
         self.ends::<TANGENT>(env, u, w, a, f, m);
         self.turn::<TANGENT>(env, w, a, f, m);
@@ -480,6 +475,20 @@ impl System {
         self.evaluate::<false>(env, u, w, Some(a), Axially::Law, f, &mut none);
         self.matrices = none;
     }
+}
+
+/// What the elements' forces on their slots come to at the nodes; zero in blocks beyond the cable.
+fn nodal_sums(forces: &[[f64; 12]], f: &mut [f64]) {
+    let (nodes, beyond) = f.split_at_mut(6 * (forces.len() + 1));
+    beyond.fill(0.0);
+    let mut before = [0.0; 6];
+    for (f, q) in nodes.chunks_exact_mut(6).zip(forces) {
+        for i in 0..6 {
+            f[i] = before[i] + q[i];
+            before[i] = q[6 + i];
+        }
+    }
+    nodes[6 * forces.len()..].copy_from_slice(&before);
 }
 
 /// Drum (first, if the cable feels it) and sheaves.

@@ -15,6 +15,7 @@ use crate::contact::surface::{Face, Surface};
 use crate::math::lanes::{Kernel, Mat3, Vec3, axpy, dot, mat_vec, widest};
 use group::{Group, LANES, Search};
 use press::{Arcs, Pressed, Twist, flat, press};
+use std::ops::Range;
 
 /// Where the search begins in the first element. Where its node lies on the surface whatever the shape, ξ = 0 is a root of the gap that says
 /// nothing, of a sign that is rounding.
@@ -130,25 +131,28 @@ pub fn touching(surface: &Surface, curve: &Cubic, e: usize, mut found: impl FnMu
 #[derive(Clone, Debug, Default)]
 pub struct Near {
     elements: Vec<usize>,
+    /// Where elements have contact forces.
+    pressed: Range<usize>,
 }
 
 impl Near {
     /// Room for `elements`.
     pub fn new(elements: usize) -> Self {
-        Self { elements: Vec::with_capacity(elements) }
+        Self { elements: Vec::with_capacity(elements), pressed: 0..0 }
     }
 }
 
 impl System {
-    /// Overwrites the contact forces; with `TANGENT` adds to the matrices.
-    pub(super) fn contact<const TANGENT: bool>(&mut self, env: &Environment, u: &[f64], w: &[f64], m: &mut Matrices) {
-        self.contact_forces.fill([0.0; 12]);
+    /// Overwrites the contact forces and adds them to the nodes'; with `TANGENT` adds to the matrices.
+    pub(super) fn contact<const TANGENT: bool>(&mut self, env: &Environment, u: &[f64], w: &[f64], f: &mut [f64], m: &mut Matrices) {
+        let pressed = std::mem::take(&mut self.near.pressed);
+        self.contact_forces[pressed].fill([0.0; 12]);
         for index in 0..self.surfaces.len() {
             let spin = self.spin(index, w);
             let coupling = if self.frozen { None } else { self.turning.iter().position(|s| s.surface == index) };
             let surface = &self.surfaces[index];
             let frame = SurfaceFrame::new(surface, env, self.frozen);
-            let (lengths, near) = (&self.chain.lengths, &mut self.near.elements);
+            let (lengths, Near { elements: near, pressed }) = (&self.chain.lengths, &mut self.near);
             let (forces, total) = (&mut self.contact_forces, &mut self.surface_loads[index]);
             *total = SurfaceLoad::default();
             Search { surface, frame: &frame, u, lengths, found: near }.run();
@@ -156,7 +160,7 @@ impl System {
                 continue;
             }
             let on = Pressed { surface, rotation: frame.rotation, turn: frame.turn, spin };
-            let side_by_side = SideBySide { on, frame: &frame, near, lengths, u, w, forces, total, m, coupling };
+            let side_by_side = SideBySide { on, frame: &frame, near, lengths, u, w, f: &mut *f, forces, pressed, total, m, coupling };
             match coupling {
                 Some(_) => widest(Contact::<TANGENT, true>(side_by_side)),
                 None => widest(Contact::<TANGENT, false>(side_by_side)),
@@ -173,7 +177,11 @@ struct SideBySide<'a> {
     lengths: &'a [f64],
     u: &'a [f64],
     w: &'a [f64],
+    /// On the nodes.
+    f: &'a mut [f64],
+    /// On the elements' slots.
     forces: &'a mut [[f64; 12]],
+    pressed: &'a mut Range<usize>,
     total: &'a mut SurfaceLoad,
     m: &'a mut Matrices,
     /// Which of the couplings, of a surface that turns.
@@ -224,9 +232,13 @@ impl SideBySide<'_> {
     fn flush<const TANGENT: bool, const TURNS: bool>(&mut self, side: usize, face: Face, arcs: &mut Arcs) {
         let sums = press::<TANGENT, TURNS>(&self.on, side, face, arcs, self.total);
         for (l, &e) in arcs.element[..arcs.count].iter().enumerate() {
-            for (to, f) in self.forces[e].iter_mut().zip(flat(&sums.forces, l)) {
-                *to += f;
+            let slots = self.forces[e].iter_mut().zip(&mut self.f[6 * e..6 * e + 12]);
+            for ((slot, node), f) in slots.zip(flat(&sums.forces, l)) {
+                *slot += f;
+                *node += f;
             }
+            let before = if self.pressed.is_empty() { e..e + 1 } else { self.pressed.clone() };
+            *self.pressed = before.start.min(e)..before.end.max(e + 1);
         }
         if let Some((slopes, twist)) = &sums.slopes {
             slopes.add_stiffness(arcs, &mut self.m.stiffness);

@@ -1,6 +1,5 @@
 //! Elements side by side, as elements of unit length, and their Gauss points.
 
-use super::gather;
 use crate::cable::shape;
 use crate::math::lanes::{Lanes, Vec3, lane};
 
@@ -13,16 +12,46 @@ pub type Rows3 = [Row; 3];
 /// A 3×3 matrix of each, row major.
 pub type Rows33 = [Row; 9];
 
-/// Puts the slots of element `e`, of unit length then, into lane `l`.
+/// Numbers of the nodes between which elements side by side lie, six a node.
+const NUMBERS: usize = 6 * (LANES + 1);
+
+/// Slots of the elements from `first` on, of `count` in all, as elements of unit length. In lanes beyond the last element there is another like it.
 #[inline(always)]
-pub fn gather_lane(x: &[f64], e: usize, length: f64, l: usize, to: &mut [Rows3; 4]) {
-    let q = gather(x, e);
-    for c in 0..3 {
-        to[0][c].0[l] = q[0][c];
-        to[1][c].0[l] = q[1][c] * length;
-        to[2][c].0[l] = q[2][c];
-        to[3][c].0[l] = q[3][c] * length;
+pub fn slots(x: &[f64], first: usize, count: usize, length: &Row) -> [Rows3; 4] {
+    let here = &x[6 * first..];
+    let mut prolonged;
+    let nodes = match here.first_chunk::<NUMBERS>() {
+        Some(all) if first + LANES <= count => all,
+        _ => {
+            prolonged = [0.0; NUMBERS];
+            let known = 6 * (count - first + 1);
+            prolonged[..known].copy_from_slice(&here[..known]);
+            for i in (known..NUMBERS).step_by(6) {
+                for c in 0..3 {
+                    prolonged[i + c] = 2.0 * prolonged[i - 6 + c] - prolonged[i - 12 + c];
+                    prolonged[i + 3 + c] = prolonged[i - 3 + c];
+                }
+            }
+            &prolonged
+        }
+    };
+    // Row by row, so that the compiler transposes in registers.
+    let mut q = [[Row::ZERO; 3]; 4];
+    for i in 0..4 {
+        for c in 0..3 {
+            for l in 0..LANES {
+                q[i][c].0[l] = nodes[6 * l + 3 * i + c];
+            }
+        }
     }
+    for i in [1, 3] {
+        for c in 0..3 {
+            for l in 0..LANES {
+                q[i][c].0[l] *= length.0[l];
+            }
+        }
+    }
+    q
 }
 
 /// Slots and differences of slots that r_p depends on: r(L) − r(0), L r_p(0), L r_p(L).

@@ -13,9 +13,9 @@ use crate::cable::section::{Section, Strains};
 use crate::cable::shape;
 use crate::hydro::line::LineInWater;
 use crate::integrator::Stage;
-use crate::math::lanes::{Kernel, Vec3, axpy, lane, scale, set_lane, widest};
+use crate::math::lanes::{Kernel, Vec3, lane, scale, set_lane, widest};
 use crate::math::quadrature::GAUSS3;
-use batch::{Batch, LANES, Row, Rows3, STILL, SectionSlopes, Slopes, Station, along, gather_lane, spans};
+use batch::{Batch, LANES, Row, Rows3, STILL, SectionSlopes, Slopes, Station, along, slots, spans};
 pub use tangent::{Each, ElementTangents};
 use water::immerse;
 
@@ -128,16 +128,31 @@ impl<const TANGENT: bool> Kernel for Pass<'_, TANGENT> {
     #[inline(always)]
     fn run(self) -> Tally {
         let Self { chain, env, u, w, a, axially, axial, forces, matrices } = self;
+        let damped = chain.section.bending_damping > 0.0;
         match axially {
-            Axially::Iterate { .. } => chain.pass_with::<TANGENT, ITERATE>(env, u, w, a, axially, axial, forces, matrices),
-            Axially::Stage(_) => chain.pass_with::<TANGENT, STAGE>(env, u, w, a, axially, axial, forces, matrices),
-            _ => chain.pass_with::<TANGENT, LAW>(env, u, w, a, axially, axial, forces, matrices),
+            Axially::Iterate { .. } if damped => chain.pass_with::<TANGENT, ITERATE, true>(env, u, w, a, axially, axial, forces, matrices),
+            Axially::Iterate { .. } => chain.pass_with::<TANGENT, ITERATE, false>(env, u, w, a, axially, axial, forces, matrices),
+            Axially::Stage(_) if damped => chain.pass_with::<TANGENT, STAGE, true>(env, u, w, a, axially, axial, forces, matrices),
+            Axially::Stage(_) => chain.pass_with::<TANGENT, STAGE, false>(env, u, w, a, axially, axial, forces, matrices),
+            _ => chain.pass_with::<TANGENT, LAW, true>(env, u, w, a, axially, axial, forces, matrices),
         }
     }
 }
 
+/// What becomes of the axial unknowns at (u, w).
+#[derive(Clone, Copy)]
+enum Ends<'a> {
+    /// A stage that Newton's method has solved.
+    Solved,
+    /// A step, of the stages' increments weighted so.
+    Weighted(&'a [f64]),
+    /// A step that knew nothing of them.
+    Unknown,
+}
+
 struct Settle<'a> {
     chain: &'a Chain,
+    ends: Ends<'a>,
     u: &'a [f64],
     w: &'a [f64],
     axial: &'a mut [Axial],
@@ -148,25 +163,48 @@ impl Kernel for Settle<'_> {
 
     #[inline(always)]
     fn run(self) {
-        let Self { chain, u, w, axial } = self;
-        let stations = GAUSS3.map(Station::new);
-        let mut batch = Batch::default();
+        let Self { chain, ends, u, w, axial } = self;
+        let section = chain.section;
+        let (stations, count) = (GAUSS3.map(Station::new), chain.lengths.len());
+        let (mut length, mut inverse) = (Row::ZERO, Row::ZERO);
         for (k, axial) in axial.iter_mut().enumerate() {
             for l in 0..LANES {
                 // Beyond the last element the last one again, whose N nobody reads.
-                let e = (k * LANES + l).min(chain.lengths.len() - 1);
-                batch.inverse.0[l] = 1.0 / chain.lengths[e];
-                gather_lane(u, e, chain.lengths[e], l, &mut batch.u);
-                gather_lane(w, e, chain.lengths[e], l, &mut batch.w);
+                length.0[l] = chain.lengths[(k * LANES + l).min(count - 1)];
             }
+            for l in 0..LANES {
+                inverse.0[l] = 1.0 / length.0[l];
+            }
+            let (u, w) = (slots(u, k * LANES, count, &length), slots(w, k * LANES, count, &length));
             for (station, axial) in stations.iter().zip(axial) {
-                // A copy, since only of what is its own does the compiler know that nothing else changes it.
-                let known = *axial;
-                for l in 0..LANES {
-                    let i = batch.inverse.0[l];
-                    let (p, vp) = (along(&station.b, &spans(&batch.u, l), i), along(&station.b, &spans(&batch.w, l), i));
-                    axial.now.0[l] = known.settled(l, &Strains { p, pp: [0.0; 3], vp, vpp: [0.0; 3] });
+                if let Ends::Weighted(weights) = ends {
+                    axial.enter(weights);
                 }
+                // A copy, and a row of its own, since only of these does the compiler know that nothing else changes them.
+                let (known, mut now) = (*axial, Row::ZERO);
+                let strains = |l: usize| {
+                    let (p, vp) = (along(&station.b, &spans(&u, l), inverse.0[l]), along(&station.b, &spans(&w, l), inverse.0[l]));
+                    Strains { p, pp: [0.0; 3], vp, vpp: [0.0; 3] }
+                };
+                match ends {
+                    Ends::Solved => {
+                        for l in 0..LANES {
+                            now.0[l] = known.settled(l, &strains(l));
+                        }
+                    }
+                    Ends::Weighted(_) => {
+                        for l in 0..LANES {
+                            let strains = strains(l);
+                            now.0[l] = known.end(l, &section.tension(&strains), &strains);
+                        }
+                    }
+                    Ends::Unknown => {
+                        for l in 0..LANES {
+                            now.0[l] = section.tension(&strains(l)).axial;
+                        }
+                    }
+                }
+                axial.now = now;
             }
         }
     }
@@ -224,8 +262,9 @@ impl Chain {
         widest(Pass::<TANGENT> { chain: self, env, u, w, a, axially, axial, forces, matrices })
     }
 
+    /// Sums only of the law's forces: stages and iterates are many, and nobody asks for theirs.
     #[inline(always)]
-    fn pass_with<const TANGENT: bool, const OF: u8>(
+    fn pass_with<const TANGENT: bool, const OF: u8, const BENDING_RATE: bool>(
         &self,
         env: &Environment,
         u: &[f64],
@@ -248,7 +287,7 @@ impl Chain {
             self.gather_batch(env, first, u, w, a, &mut batch);
             let slopes = if TANGENT { matrices.elements.group(first / LANES, &batch) } else { &mut none };
             for ((station, slopes), axial) in stations.iter().zip(&mut *slopes).zip(&mut axial[first / LANES]) {
-                self.resist::<TANGENT, OF>(&mut batch, station, slopes, axially, axial);
+                self.resist::<TANGENT, OF, BENDING_RATE>(&mut batch, station, slopes, axially, axial);
             }
             let wet = batch.wet.0.iter().any(|x| *x > 0.0);
             if let Some(water) = &self.water
@@ -262,13 +301,17 @@ impl Chain {
                     }
                 }
             }
-            self.weigh(env, &mut batch);
+            self.weigh::<OF>(env, &mut batch);
+            if OF == LAW {
+                for l in 0..lanes {
+                    tally.elastic += batch.elastic.0[l];
+                    tally.elastic_power += batch.power.0[l];
+                    tally.turning += batch.turning.0[l];
+                    tally.kinetic += batch.kinetic.0[l];
+                    tally.accelerate(batch.inertial.0[l]);
+                }
+            }
             for l in 0..lanes {
-                tally.elastic += batch.elastic.0[l];
-                tally.elastic_power += batch.power.0[l];
-                tally.turning += batch.turning.0[l];
-                tally.kinetic += batch.kinetic.0[l];
-                tally.accelerate(batch.inertial.0[l]);
                 let out = &mut forces[first + l];
                 for i in 0..4 {
                     out[3 * i..3 * i + 3].copy_from_slice(&lane(&batch.f[i], l));
@@ -280,36 +323,17 @@ impl Chain {
 
     /// The step that began with the last tangent ends at (u, w), of the stages' increments weighted so.
     pub fn accept(&self, u: &[f64], w: &[f64], weights: &[f64], axial: &mut [Axial]) {
-        axial.iter_mut().flatten().for_each(|a| a.enter(weights));
-        self.at_stations(u, w, axial, |axial, l, strains| axial.end(l, &self.section.resistance::<false>(strains), strains));
+        widest(Settle { chain: self, ends: Ends::Weighted(weights), u, w, axial });
     }
 
     /// A step that knew nothing of the axial unknowns ends at (u, w).
     pub fn adopt(&self, u: &[f64], w: &[f64], axial: &mut [Axial]) {
-        self.at_stations(u, w, axial, |axial, l, strains| axial.now.0[l] = self.section.resistance::<false>(strains).axial);
+        widest(Settle { chain: self, ends: Ends::Unknown, u, w, axial });
     }
 
     /// Newton's method has ended at (u, w).
     pub fn settle(&self, u: &[f64], w: &[f64], axial: &mut [Axial]) {
-        widest(Settle { chain: self, u, w, axial });
-    }
-
-    /// Calls `each` with every axial unknown and the slopes there.
-    fn at_stations(&self, u: &[f64], w: &[f64], axial: &mut [Axial], each: impl Fn(&mut AxialUnknown<LANES>, usize, &Strains)) {
-        let stations = GAUSS3.map(Station::new);
-        for (k, axial) in axial.iter_mut().enumerate() {
-            for (station, axial) in stations.iter().zip(axial) {
-                for l in 0..LANES.min(self.lengths.len() - k * LANES) {
-                    let e = k * LANES + l;
-                    let length = self.lengths[e];
-                    let slope = |x: &[f64]| {
-                        let q = gather(x, e);
-                        along(&station.b, &[axpy(&q[2], -1.0, &q[0]), scale(length, &q[1]), scale(length, &q[3])], 1.0 / length)
-                    };
-                    each(axial, l, &Strains { p: slope(u), pp: [0.0; 3], vp: slope(w), vpp: [0.0; 3] });
-                }
-            }
-        }
+        widest(Settle { chain: self, ends: Ends::Solved, u, w, axial });
     }
 
     /// Fills a batch with the elements from `first` on.
@@ -317,14 +341,12 @@ impl Chain {
     fn gather_batch(&self, env: &Environment, first: usize, u: &[f64], w: &[f64], a: Option<&[f64]>, batch: &mut Batch) {
         for l in 0..LANES {
             // Beyond the last element the last one again, whose results are left.
-            let e = (first + l).min(self.lengths.len() - 1);
-            let length = self.lengths[e];
-            batch.length.0[l] = length;
-            gather_lane(u, e, length, l, &mut batch.u);
-            gather_lane(w, e, length, l, &mut batch.w);
-            if let Some(a) = a {
-                gather_lane(a, e, length, l, &mut batch.a);
-            }
+            batch.length.0[l] = self.lengths[(first + l).min(self.lengths.len() - 1)];
+        }
+        batch.u = slots(u, first, self.lengths.len(), &batch.length);
+        batch.w = slots(w, first, self.lengths.len(), &batch.length);
+        if let Some(a) = a {
+            batch.a = slots(a, first, self.lengths.len(), &batch.length);
         }
         let z = env.base[2].0[0];
         let full = self.water.as_ref().map_or(f64::NEG_INFINITY, LineInWater::full);
@@ -342,7 +364,7 @@ impl Chain {
 
     /// Internal forces at a Gauss point.
     #[inline(always)]
-    fn resist<const TANGENT: bool, const OF: u8>(
+    fn resist<const TANGENT: bool, const OF: u8, const BENDING_RATE: bool>(
         &self,
         batch: &mut Batch,
         station: &Station,
@@ -368,7 +390,11 @@ impl Chain {
             let i = batch.inverse.0[l];
             let (u, w) = (spans(&batch.u, l), spans(&batch.w, l));
             let strains = Strains { p: along(&b, &u, i), pp: along(&d, &u, i * i), vp: along(&b, &w, i), vpp: along(&d, &w, i * i) };
-            let mut r = section.resistance_carrying::<TANGENT>(&strains, anew, if TANGENT { (1.0 - anew) * known.now.0[l] } else { 0.0 });
+            let mut r = section.resistance_carrying::<TANGENT, BENDING_RATE>(
+                &strains,
+                anew,
+                if TANGENT { (1.0 - anew) * known.now.0[l] } else { 0.0 },
+            );
             if TANGENT {
                 begun.begin(l, &r, &strains, anew);
             }
@@ -377,9 +403,11 @@ impl Chain {
             } else if OF == ITERATE {
                 (r.n, next.0[l]) = known.iterate(l, first, &r, &strains);
             }
-            let wl = weight * batch.length.0[l];
-            batch.elastic.0[l] += wl * r.energy;
-            batch.power.0[l] += wl * r.power;
+            if OF == LAW {
+                let wl = weight * batch.length.0[l];
+                batch.elastic.0[l] += wl * r.energy;
+                batch.power.0[l] += wl * r.power;
+            }
             for c in 0..3 {
                 let (n, m) = (weight * r.n[c], weight * i * r.m[c]);
                 let a = b[0] * n + d[0] * m;
@@ -415,7 +443,7 @@ impl Chain {
 
     /// Weight, the moving frame's and the element's own inertia; then forces on the slots of the true length.
     #[inline(always)]
-    fn weigh(&self, env: &Environment, batch: &mut Batch) {
+    fn weigh<const OF: u8>(&self, env: &Environment, batch: &mut Batch) {
         let (total, mass) = (shape::integral(1.0), shape::mass(1.0));
         for c in 0..3 {
             let field = env.gravity[c] - env.base[c].0[2];
@@ -427,13 +455,17 @@ impl Chain {
                     let m = &mass[i];
                     let product = |x: &[Rows3; 4]| m[0] * x[0][c].0[l] + m[1] * x[1][c].0[l] + m[2] * x[2][c].0[l] + m[3] * x[3][c].0[l];
                     let (v, inertia) = (batch.w[i][c].0[l], product(&batch.a));
-                    twice += product(&batch.w) * v;
-                    inertial += inertia * v;
+                    if OF == LAW {
+                        twice += product(&batch.w) * v;
+                        inertial += inertia * v;
+                    }
                     let f = batch.f[i][c].0[l] + scale * (total[i] * field - inertia);
                     batch.f[i][c].0[l] = if i % 2 == 1 { f * length } else { f };
                 }
-                batch.kinetic.0[l] += 0.5 * scale * twice;
-                batch.inertial.0[l] += scale * inertial;
+                if OF == LAW {
+                    batch.kinetic.0[l] += 0.5 * scale * twice;
+                    batch.inertial.0[l] += scale * inertial;
+                }
             }
         }
     }

@@ -2,7 +2,7 @@
 //! matrices, products with them cost no more than with matrices, and the sum M + g D + g² K is assembled only once.
 
 use super::Chain;
-use super::batch::{Batch, LANES, Row, Rows3, SPANS, STILL, Slopes, Station, gather_lane, spans, value};
+use super::batch::{Batch, LANES, Row, Rows3, SPANS, STILL, Slopes, Station, slots, spans, value};
 use crate::cable::shape;
 use crate::linalg::BlockTridiagonal;
 use crate::math::lanes::{Kernel, Vec3, dot, lane, widest};
@@ -270,10 +270,7 @@ impl ElementTangents {
     /// The slots of a group, as elements of unit length, times a factor.
     #[inline(always)]
     fn slots(&self, k: usize, (s, x): (f64, &[f64])) -> [Rows3; 4] {
-        let mut q = [[Row::ZERO; 3]; 4];
-        for l in 0..LANES {
-            gather_lane(x, (k * LANES + l).min(self.count - 1), self.groups[k].length.0[l], l, &mut q);
-        }
+        let mut q = slots(x, k * LANES, self.count, &self.groups[k].length);
         for i in 0..4 {
             for c in 0..3 {
                 for l in 0..LANES {
