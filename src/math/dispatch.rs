@@ -54,6 +54,13 @@ impl Registers {
     }
 }
 
+/// Whether kernels run in the widest registers.
+#[cfg(target_arch = "x86_64")]
+#[inline]
+pub fn has_avx512() -> bool {
+    Registers::at_hand() == Registers::Avx512
+}
+
 /// Runs a kernel compiled for this processor. Rounding does not depend on the processor: products and sums are not fused.
 #[inline]
 pub fn widest<K: Kernel>(kernel: K) -> K::Output {

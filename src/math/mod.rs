@@ -7,3 +7,4 @@ pub mod jet;
 pub mod lanes;
 pub mod quadrature;
 pub mod ring;
+pub mod transpose;

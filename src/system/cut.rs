@@ -37,7 +37,14 @@ impl<const TANGENT: bool> Kernel for Loads<'_, TANGENT> {
 
 impl Wet<'_> {
     /// Adds what the points feel to forces and matrices.
-    fn flush<const TANGENT: bool>(&mut self, base: &[Jet; 3], forces: &mut [[f64; 12]], tally: &mut Tally, m: &mut Matrices) {
+    fn flush<const TANGENT: bool>(
+        &mut self,
+        base: &[Jet; 3],
+        forces: &mut [[f64; 12]],
+        f: &mut [f64],
+        tally: &mut Tally,
+        m: &mut Matrices,
+    ) {
         if self.count == 0 {
             return;
         }
@@ -47,7 +54,7 @@ impl Wet<'_> {
             let (load, at, water) = (loads.at(l), self.points.at(l), self.water);
             let (share, dshare) = line_share(at.z, water.waterline, water.diameter);
             let s = wl * share;
-            point.push(&load.f.map(|x| s * x), forces);
+            point.push(&load.f.map(|x| s * x), forces, f);
             let across = |x: &Vec3<f64>| dot(&point.w, x) - dot(&point.w, &point.p) * dot(x, &point.p) / dot(&point.p, &point.p);
             let relative = std::array::from_fn(|c| at.a[c] - base[c].0[2]);
             tally.accelerate(s * water.added_mass * across(&relative));
@@ -69,7 +76,15 @@ impl Wet<'_> {
 
 impl System {
     /// Adds the fluid forces on elements that the surface crosses.
-    pub(super) fn cut<const TANGENT: bool>(&mut self, env: &Environment, u: &[f64], w: &[f64], a: Option<&[f64]>, m: &mut Matrices) {
+    pub(super) fn cut<const TANGENT: bool>(
+        &mut self,
+        env: &Environment,
+        u: &[f64],
+        w: &[f64],
+        a: Option<&[f64]>,
+        f: &mut [f64],
+        m: &mut Matrices,
+    ) {
         let Some(water) = &self.chain.water else { return };
         self.chain.crossed(water, env, u, &mut self.crossed);
         if self.crossed.is_empty() {
@@ -96,7 +111,7 @@ impl System {
                         w: point.w,
                     };
                     if wet.count == LANES {
-                        wet.flush::<TANGENT>(&env.base, forces, tally, m);
+                        wet.flush::<TANGENT>(&env.base, forces, f, tally, m);
                     }
                     wet.points.set(wet.count, &at);
                     wet.at[wet.count] = Some((point, (to - from) * l * weight));
@@ -104,6 +119,6 @@ impl System {
                 }
             });
         }
-        wet.flush::<TANGENT>(&env.base, forces, tally, m);
+        wet.flush::<TANGENT>(&env.base, forces, f, tally, m);
     }
 }

@@ -119,7 +119,7 @@ pub struct System {
     pub turbulence: Option<Turbulence>,
     /// Force on the body.
     pub body_force: [Ramp; 3],
-    /// Forces of each element on its slots, of the last evaluation, without contact.
+    /// Forces of each element on its slots, of the last evaluation of the law, without contact.
     pub forces: Vec<[f64; 12]>,
     /// Drum and sheaves: what the cable can touch.
     pub surfaces: Vec<Surface>,
@@ -183,7 +183,7 @@ impl System {
         };
         let surfaces = surfaces(scene);
         let n = scene.elements.len();
-        let chain = Chain { lengths: scene.elements.clone(), mass_per_length: scene.cable.mass_per_length, section, water };
+        let chain = Chain::new(scene.elements.clone(), scene.cable.mass_per_length, section, water);
         let axial = chain.axial();
         Self {
             chain,
@@ -318,11 +318,10 @@ impl System {
         f: &mut [f64],
         m: &mut Matrices,
     ) {
-        self.tally = self.chain.pass::<TANGENT>(env, u, w, a, axially, &mut self.axial, &mut self.forces, m);
+        self.tally = self.chain.pass::<TANGENT>(env, u, w, a, axially, &mut self.axial, &mut self.forces, f, m);
         if self.chain.water.is_some() {
-            self.cut::<TANGENT>(env, u, w, a, m);
+            self.cut::<TANGENT>(env, u, w, a, f, m);
         }
-        nodal_sums(&self.forces, f);
         if !self.surfaces.is_empty() {
             self.contact::<TANGENT>(env, u, w, f, m);
         }
@@ -475,20 +474,6 @@ impl System {
         self.evaluate::<false>(env, u, w, Some(a), Axially::Law, f, &mut none);
         self.matrices = none;
     }
-}
-
-/// What the elements' forces on their slots come to at the nodes; zero in blocks beyond the cable.
-fn nodal_sums(forces: &[[f64; 12]], f: &mut [f64]) {
-    let (nodes, beyond) = f.split_at_mut(6 * (forces.len() + 1));
-    beyond.fill(0.0);
-    let mut before = [0.0; 6];
-    for (f, q) in nodes.chunks_exact_mut(6).zip(forces) {
-        for i in 0..6 {
-            f[i] = before[i] + q[i];
-            before[i] = q[6 + i];
-        }
-    }
-    nodes[6 * forces.len()..].copy_from_slice(&before);
 }
 
 /// Drum (first, if the cable feels it) and sheaves.

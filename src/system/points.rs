@@ -41,13 +41,15 @@ impl ElementPoint {
         }
     }
 
-    /// Adds a force (per length times length) to the element's slots.
+    /// Adds a force (per length times length) to the element's slots and to its nodes.
     #[inline]
-    pub fn push(&self, f: &Vec3<f64>, forces: &mut [[f64; 12]]) {
-        let out = &mut forces[self.e];
+    pub fn push(&self, force: &Vec3<f64>, forces: &mut [[f64; 12]], f: &mut [f64]) {
+        let (slots, nodes) = (&mut forces[self.e], &mut f[6 * self.e..6 * self.e + 12]);
         for i in 0..4 {
             for c in 0..3 {
-                out[3 * i + c] += self.s[i] * f[c];
+                let share = self.s[i] * force[c];
+                slots[3 * i + c] += share;
+                nodes[3 * i + c] += share;
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::cable::shape;
 use crate::math::lanes::{Lanes, Vec3, lane};
+use crate::math::transpose::{BLOCK, from_rows, previous, to_rows};
 
 /// Elements side by side.
 pub const LANES: usize = 8;
@@ -12,21 +13,17 @@ pub type Rows3 = [Row; 3];
 /// A 3×3 matrix of each, row major.
 pub type Rows33 = [Row; 9];
 
-/// Numbers of the nodes between which elements side by side lie, six a node.
-const NUMBERS: usize = 6 * (LANES + 1);
-
 /// Slots of the elements from `first` on, of `count` in all, as elements of unit length. In lanes beyond the last element there is another like it.
 #[inline(always)]
 pub fn slots(x: &[f64], first: usize, count: usize, length: &Row) -> [Rows3; 4] {
     let here = &x[6 * first..];
-    let mut prolonged;
-    let nodes = match here.first_chunk::<NUMBERS>() {
+    let mut prolonged = [0.0; BLOCK + 6];
+    let nodes = match here.first_chunk::<{ BLOCK + 6 }>() {
         Some(all) if first + LANES <= count => all,
         _ => {
-            prolonged = [0.0; NUMBERS];
             let known = 6 * (count - first + 1);
             prolonged[..known].copy_from_slice(&here[..known]);
-            for i in (known..NUMBERS).step_by(6) {
+            for i in (known..BLOCK + 6).step_by(6) {
                 for c in 0..3 {
                     prolonged[i + c] = 2.0 * prolonged[i - 6 + c] - prolonged[i - 12 + c];
                     prolonged[i + 3 + c] = prolonged[i - 3 + c];
@@ -35,15 +32,9 @@ pub fn slots(x: &[f64], first: usize, count: usize, length: &Row) -> [Rows3; 4] 
             &prolonged
         }
     };
-    // Row by row, so that the compiler transposes in registers.
-    let mut q = [[Row::ZERO; 3]; 4];
-    for i in 0..4 {
-        for c in 0..3 {
-            for l in 0..LANES {
-                q[i][c].0[l] = nodes[6 * l + 3 * i + c];
-            }
-        }
-    }
+    let (Some(here), Some(beyond)) = (nodes.first_chunk(), nodes.last_chunk()) else { return [[Row::ZERO; 3]; 4] };
+    let (begin, end) = (to_rows(here), to_rows(beyond));
+    let mut q = [[begin[0], begin[1], begin[2]], [begin[3], begin[4], begin[5]], [end[0], end[1], end[2]], [end[3], end[4], end[5]]];
     for i in [1, 3] {
         for c in 0..3 {
             for l in 0..LANES {
@@ -52,6 +43,36 @@ pub fn slots(x: &[f64], first: usize, count: usize, length: &Row) -> [Rows3; 4] 
         }
     }
     q
+}
+
+/// Sums of forces on slots at the nodes, group of elements by group.
+#[derive(Default)]
+pub struct NodalSums {
+    /// What the elements so far do to the node where the next begins.
+    carried: [f64; 6],
+}
+
+impl NodalSums {
+    /// The nodes where `lanes` elements begin, six numbers each.
+    #[inline(always)]
+    pub fn begun(&mut self, f: &[Rows3; 4], lanes: usize) -> [f64; BLOCK] {
+        let mut rows = [f[0][0], f[0][1], f[0][2], f[1][0], f[1][1], f[1][2]];
+        for k in 0..6 {
+            let ended = &f[2 + k / 3][k % 3];
+            let before = previous(ended, self.carried[k]);
+            self.carried[k] = ended.0[lanes - 1];
+            for l in 0..LANES {
+                rows[k].0[l] += before.0[l];
+            }
+        }
+        from_rows(&rows)
+    }
+
+    /// The last node.
+    #[inline(always)]
+    pub fn last(&self) -> [f64; 6] {
+        self.carried
+    }
 }
 
 /// Slots and differences of slots that r_p depends on: r(L) − r(0), L r_p(0), L r_p(L).

@@ -15,7 +15,7 @@ use crate::hydro::line::LineInWater;
 use crate::integrator::Stage;
 use crate::math::lanes::{Kernel, Vec3, lane, scale, set_lane, widest};
 use crate::math::quadrature::GAUSS3;
-use batch::{Batch, LANES, Row, Rows3, STILL, SectionSlopes, Slopes, Station, along, slots, spans};
+use batch::{Batch, LANES, NodalSums, Row, Rows3, STILL, SectionSlopes, Slopes, Station, along, slots, spans};
 pub use tangent::{Each, ElementTangents};
 use water::immerse;
 
@@ -58,6 +58,8 @@ pub enum Wetness {
 pub struct Chain {
     /// Unstretched lengths, m.
     pub lengths: Vec<f64>,
+    /// The same side by side, with their inverses.
+    rows: Vec<[Row; 2]>,
     /// Mass per length, kg/m.
     pub mass_per_length: f64,
     /// Laws of the section.
@@ -119,6 +121,7 @@ struct Pass<'a, const TANGENT: bool> {
     axially: Axially<'a>,
     axial: &'a mut [Axial],
     forces: &'a mut [[f64; 12]],
+    f: &'a mut [f64],
     matrices: &'a mut Matrices,
 }
 
@@ -127,14 +130,16 @@ impl<const TANGENT: bool> Kernel for Pass<'_, TANGENT> {
 
     #[inline(always)]
     fn run(self) -> Tally {
-        let Self { chain, env, u, w, a, axially, axial, forces, matrices } = self;
+        let Self { chain, env, u, w, a, axially, axial, forces, f, matrices } = self;
         let damped = chain.section.bending_damping > 0.0;
         match axially {
-            Axially::Iterate { .. } if damped => chain.pass_with::<TANGENT, ITERATE, true>(env, u, w, a, axially, axial, forces, matrices),
-            Axially::Iterate { .. } => chain.pass_with::<TANGENT, ITERATE, false>(env, u, w, a, axially, axial, forces, matrices),
-            Axially::Stage(_) if damped => chain.pass_with::<TANGENT, STAGE, true>(env, u, w, a, axially, axial, forces, matrices),
-            Axially::Stage(_) => chain.pass_with::<TANGENT, STAGE, false>(env, u, w, a, axially, axial, forces, matrices),
-            _ => chain.pass_with::<TANGENT, LAW, true>(env, u, w, a, axially, axial, forces, matrices),
+            Axially::Iterate { .. } if damped => {
+                chain.pass_with::<TANGENT, ITERATE, true>(env, u, w, a, axially, axial, forces, f, matrices)
+            }
+            Axially::Iterate { .. } => chain.pass_with::<TANGENT, ITERATE, false>(env, u, w, a, axially, axial, forces, f, matrices),
+            Axially::Stage(_) if damped => chain.pass_with::<TANGENT, STAGE, true>(env, u, w, a, axially, axial, forces, f, matrices),
+            Axially::Stage(_) => chain.pass_with::<TANGENT, STAGE, false>(env, u, w, a, axially, axial, forces, f, matrices),
+            _ => chain.pass_with::<TANGENT, LAW, true>(env, u, w, a, axially, axial, forces, f, matrices),
         }
     }
 }
@@ -166,16 +171,8 @@ impl Kernel for Settle<'_> {
         let Self { chain, ends, u, w, axial } = self;
         let section = chain.section;
         let (stations, count) = (GAUSS3.map(Station::new), chain.lengths.len());
-        let (mut length, mut inverse) = (Row::ZERO, Row::ZERO);
-        for (k, axial) in axial.iter_mut().enumerate() {
-            for l in 0..LANES {
-                // Beyond the last element the last one again, whose N nobody reads.
-                length.0[l] = chain.lengths[(k * LANES + l).min(count - 1)];
-            }
-            for l in 0..LANES {
-                inverse.0[l] = 1.0 / length.0[l];
-            }
-            let (u, w) = (slots(u, k * LANES, count, &length), slots(w, k * LANES, count, &length));
+        for (k, (axial, [length, inverse])) in axial.iter_mut().zip(&chain.rows).enumerate() {
+            let (u, w) = (slots(u, k * LANES, count, length), slots(w, k * LANES, count, length));
             for (station, axial) in stations.iter().zip(axial) {
                 if let Ends::Weighted(weights) = ends {
                     axial.enter(weights);
@@ -211,6 +208,20 @@ impl Kernel for Settle<'_> {
 }
 
 impl Chain {
+    /// Of elements of these lengths (m), with mass per length (kg/m), section, and water where there is any.
+    pub fn new(lengths: Vec<f64>, mass_per_length: f64, section: Section, water: Option<LineInWater>) -> Self {
+        let rows = (0..lengths.len()).step_by(LANES).map(|first| {
+            let (mut length, mut inverse) = (Row::ZERO, Row::ZERO);
+            for l in 0..LANES {
+                // Beyond the last element the last one again, whose results are left.
+                length.0[l] = lengths[(first + l).min(lengths.len() - 1)];
+                inverse.0[l] = 1.0 / length.0[l];
+            }
+            [length, inverse]
+        });
+        Self { rows: rows.collect(), lengths, mass_per_length, section, water }
+    }
+
     /// Room for the axial forces of all elements.
     pub fn axial(&self) -> Vec<Axial> {
         vec![[AxialUnknown::NONE; 3]; self.lengths.len().div_ceil(LANES)]
@@ -245,8 +256,8 @@ impl Chain {
         }
     }
 
-    /// Overwrites `forces` (12 per element: all that acts on the element's own slots, inertia included) and, with `TANGENT`, the elements' share of
-    /// M, D and K of F − M(u) a. `a`: acceleration relative to the first node; without it no inertia relative to the first node. `axially`:
+    /// Overwrites `f` (what the elements do to the nodes, inertia included), where the forces are the law's also `forces` (12 per element: the same
+    /// on its own slots), and, with `TANGENT`, the elements' share of M, D and K of F − M(u) a. `a`: acceleration relative to the first node; without it no inertia relative to the first node. `axially`:
     /// see there.
     pub fn pass<const TANGENT: bool>(
         &self,
@@ -257,9 +268,10 @@ impl Chain {
         axially: Axially,
         axial: &mut [Axial],
         forces: &mut [[f64; 12]],
+        f: &mut [f64],
         matrices: &mut Matrices,
     ) -> Tally {
-        widest(Pass::<TANGENT> { chain: self, env, u, w, a, axially, axial, forces, matrices })
+        widest(Pass::<TANGENT> { chain: self, env, u, w, a, axially, axial, forces, f, matrices })
     }
 
     /// Sums only of the law's forces: stages and iterates are many, and nobody asks for theirs.
@@ -273,12 +285,14 @@ impl Chain {
         axially: Axially,
         axial: &mut [Axial],
         forces: &mut [[f64; 12]],
+        f: &mut [f64],
         matrices: &mut Matrices,
     ) -> Tally {
         let mut tally = Tally::default();
         let stations = GAUSS3.map(Station::new);
         let mut none = [STILL; 3];
         let mut batch = Batch::default();
+        let mut sums = NodalSums::default();
         if TANGENT {
             matrices.elements.begin(self);
         }
@@ -311,13 +325,18 @@ impl Chain {
                     tally.accelerate(batch.inertial.0[l]);
                 }
             }
-            for l in 0..lanes {
-                let out = &mut forces[first + l];
-                for i in 0..4 {
-                    out[3 * i..3 * i + 3].copy_from_slice(&lane(&batch.f[i], l));
+            if OF == LAW {
+                for l in 0..lanes {
+                    let out = &mut forces[first + l];
+                    for i in 0..4 {
+                        out[3 * i..3 * i + 3].copy_from_slice(&lane(&batch.f[i], l));
+                    }
                 }
             }
+            f[6 * first..6 * (first + lanes)].copy_from_slice(&sums.begun(&batch.f, lanes)[..6 * lanes]);
         }
+        f[6 * self.lengths.len()..6 * self.lengths.len() + 6].copy_from_slice(&sums.last());
+        f[6 * self.lengths.len() + 6..].fill(0.0);
         tally
     }
 
@@ -339,22 +358,19 @@ impl Chain {
     /// Fills a batch with the elements from `first` on.
     #[inline(always)]
     fn gather_batch(&self, env: &Environment, first: usize, u: &[f64], w: &[f64], a: Option<&[f64]>, batch: &mut Batch) {
-        for l in 0..LANES {
-            // Beyond the last element the last one again, whose results are left.
-            batch.length.0[l] = self.lengths[(first + l).min(self.lengths.len() - 1)];
-        }
-        batch.u = slots(u, first, self.lengths.len(), &batch.length);
-        batch.w = slots(w, first, self.lengths.len(), &batch.length);
+        let count = self.lengths.len();
+        [batch.length, batch.inverse] = self.rows[first / LANES];
+        batch.u = slots(u, first, count, &batch.length);
+        batch.w = slots(w, first, count, &batch.length);
         if let Some(a) = a {
-            batch.a = slots(a, first, self.lengths.len(), &batch.length);
+            batch.a = slots(a, first, count, &batch.length);
         }
-        let z = env.base[2].0[0];
-        let full = self.water.as_ref().map_or(f64::NEG_INFINITY, LineInWater::full);
-        for l in 0..LANES {
-            batch.inverse.0[l] = 1.0 / batch.length.0[l];
-            let u = &batch.u;
-            let (_, high) = bounds(u[0][2].0[l] + z, u[1][2].0[l], u[2][2].0[l] + z, u[3][2].0[l]);
-            batch.wet.0[l] = if high <= full { 1.0 } else { 0.0 };
+        if let Some(water) = &self.water {
+            let (z, full, u) = (env.base[2].0[0], water.full(), &batch.u);
+            for l in 0..LANES {
+                let (_, high) = bounds(u[0][2].0[l] + z, u[1][2].0[l], u[2][2].0[l] + z, u[3][2].0[l]);
+                batch.wet.0[l] = if high <= full { 1.0 } else { 0.0 };
+            }
         }
         batch.f = [[Row::ZERO; 3]; 4];
         for sum in [&mut batch.elastic, &mut batch.power, &mut batch.kinetic, &mut batch.turning, &mut batch.inertial] {

@@ -2,7 +2,7 @@
 //! matrices, products with them cost no more than with matrices, and the sum M + g D + g² K is assembled only once.
 
 use super::Chain;
-use super::batch::{Batch, LANES, Row, Rows3, SPANS, STILL, Slopes, Station, slots, spans, value};
+use super::batch::{Batch, LANES, NodalSums, Row, Rows3, SPANS, STILL, Slopes, Station, slots, spans, value};
 use crate::cable::shape;
 use crate::linalg::BlockTridiagonal;
 use crate::math::lanes::{Kernel, Vec3, dot, lane, widest};
@@ -238,6 +238,7 @@ impl Kernel for Product<'_> {
     fn run(self) {
         let Self { of, x: [a, w, u], y } = self;
         let stations = GAUSS3.map(Station::new);
+        let mut sums = NodalSums::default();
         for (k, group) in of.groups.iter().enumerate() {
             let first = k * LANES;
             let mut f = [[Row::ZERO; 3]; 4];
@@ -256,12 +257,13 @@ impl Kernel for Product<'_> {
                     f[3][c].0[l] *= group.length.0[l];
                 }
             }
-            for l in 0..LANES.min(of.count - first) {
-                let y = &mut y[6 * (first + l)..6 * (first + l) + 12];
-                for i in 0..12 {
-                    y[i] += f[i / 3][i % 3].0[l];
-                }
+            let lanes = LANES.min(of.count - first);
+            for (y, f) in y[6 * first..6 * (first + lanes)].iter_mut().zip(sums.begun(&f, lanes)) {
+                *y += f;
             }
+        }
+        for (y, f) in y[6 * of.count..].iter_mut().zip(sums.last()) {
+            *y += f;
         }
     }
 }
