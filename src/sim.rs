@@ -118,7 +118,7 @@ struct Work {
     /// Whether forces from outside jump where the communication step begins, so that the power at its begin is not that at the end of the last.
     jumped: bool,
     /// The outputs at the begin of a step, and where the tangent was taken.
-    outputs: Vec<f64>,
+    outputs: Outputs,
     tangent: Vec<f64>,
 }
 
@@ -155,7 +155,7 @@ impl Simulation {
                 constant_mass,
                 overrun: 0.0,
                 jumped: true,
-                outputs: Vec::new(),
+                outputs: Outputs::default(),
                 tangent: Vec::new(),
             },
             outputs: Outputs {
@@ -369,12 +369,10 @@ impl Simulation {
             return Err(SimError::Step(format!("the end {time} s must lie after the present time {begin} s")));
         }
         self.backup.copy(&self.state);
-        let kept = &mut self.work.outputs;
-        kept.clear();
-        self.outputs.visit(&mut |x| kept.push(*x));
+        self.work.outputs.copy(&self.outputs);
         let mut kept = std::mem::take(&mut self.work.tangent);
         kept.clear();
-        self.visit_tangent(&mut |x| kept.push(*x));
+        self.visit_tangent(&mut |x| kept.extend_from_slice(x));
         self.work.tangent = kept;
         let drives = self.drives();
         self.last = None;
@@ -385,11 +383,14 @@ impl Simulation {
                 Ok(())
             }
             Err(message) => {
-                let mut kept = self.work.outputs.iter();
-                self.outputs.visit(&mut |x| *x = kept.next().copied().unwrap_or(*x));
+                self.outputs.copy(&self.work.outputs);
                 let kept = std::mem::take(&mut self.work.tangent);
-                let mut numbers = kept.iter();
-                self.visit_tangent(&mut |x| *x = numbers.next().copied().unwrap_or(*x));
+                let mut rest = &kept[..];
+                self.visit_tangent(&mut |x| {
+                    let (these, after) = rest.split_at(x.len());
+                    x.copy_from_slice(these);
+                    rest = after;
+                });
                 self.work.tangent = kept;
                 self.method.retake(&mut self.system);
                 self.rewind(&drives);
@@ -614,7 +615,7 @@ impl Simulation {
         // Without a branch, so that they go side by side.
         let all = |x: &[f64]| x.iter().fold(true, |all, x| all & x.is_finite());
         let mut finite = all(&s.u) && all(&s.w) && all(&s.a) && all(&s.n) && s.ledger.error().is_finite();
-        self.outputs.visit(&mut |x| finite &= x.is_finite());
+        self.outputs.visit(|x| finite &= x.is_finite());
         finite
     }
 
@@ -648,12 +649,12 @@ impl Simulation {
         if let Some(compensation) = &mut self.compensation {
             compensation.visit(visit);
         }
-        self.outputs.visit(visit);
-        self.visit_tangent(visit);
+        self.outputs.visit(&mut *visit);
+        self.visit_tangent(&mut |x| x.iter_mut().for_each(&mut *visit));
     }
 
-    /// Where the tangent was taken that a method may keep from step to step.
-    fn visit_tangent(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+    /// Where the tangent was taken that a method may keep from step to step, run by run.
+    fn visit_tangent(&mut self, visit: &mut dyn FnMut(&mut [f64])) {
         if self.method.carries_over() {
             self.method.visit(visit);
             self.system.visit_origin(visit);

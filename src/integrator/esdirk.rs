@@ -13,6 +13,7 @@ use super::vectors::{add, blend, climb, long_dot};
 use super::{Integrator, Problem, Trial};
 use crate::linalg::Bordered;
 use crate::system::Matrices;
+use std::slice::from_mut;
 
 /// A step's length may change so much before the matrix is factored anew.
 const SAME_STEP: f64 = 0.02;
@@ -206,10 +207,10 @@ impl Integrator for Esdirk {
         (self.g, self.rate) = (0.0, 0.0);
     }
 
-    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        visit(&mut self.g);
-        visit(&mut self.rate);
-        self.origin.iter_mut().flatten().for_each(visit);
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut [f64])) {
+        visit(from_mut(&mut self.g));
+        visit(from_mut(&mut self.rate));
+        self.origin.iter_mut().for_each(|x| visit(x));
     }
 
     fn retake<P: Problem>(&mut self, problem: &mut P) {

@@ -72,7 +72,7 @@ impl Integrator for Method {
         whichever!(self, m => m.forget());
     }
 
-    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut [f64])) {
         whichever!(self, m => m.visit(visit));
     }
 

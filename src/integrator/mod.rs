@@ -96,8 +96,8 @@ pub trait Integrator {
     /// The next step begins with a new tangent.
     fn forget(&mut self);
 
-    /// Every number that says where the kept tangent was taken, for snapshots; none if the method keeps none from step to step.
-    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64));
+    /// Every number that says where the kept tangent was taken, run by run, for snapshots; none if the method keeps none from step to step.
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut [f64]));
 
     /// Takes that tangent again and factors it, after a snapshot was read.
     fn retake<P: Problem>(&mut self, problem: &mut P);

@@ -190,7 +190,7 @@ impl Integrator for Rodas4 {
 
     fn forget(&mut self) {}
 
-    fn visit(&mut self, _: &mut dyn FnMut(&mut f64)) {}
+    fn visit(&mut self, _: &mut dyn FnMut(&mut [f64])) {}
 
     fn retake<P: Problem>(&mut self, _: &mut P) {}
 

@@ -29,7 +29,7 @@ impl Quintic {
     }
 
     /// Value and three derivatives at τ.
-    #[inline]
+    #[inline(always)]
     pub fn jet(&self, t: f64) -> Jet {
         let c = &self.0;
         Jet([

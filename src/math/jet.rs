@@ -8,13 +8,13 @@ pub struct Jet(pub [f64; 4]);
 
 impl Jet {
     /// A constant.
-    #[inline]
+    #[inline(always)]
     pub fn constant(x: f64) -> Self {
         Self([x, 0.0, 0.0, 0.0])
     }
 
     /// Sine and cosine (chain rule to the third order).
-    #[inline]
+    #[inline(always)]
     pub fn sin_cos(self) -> (Self, Self) {
         let [x, d1, d2, d3] = self.0;
         let (s, c) = x.sin_cos();
@@ -38,7 +38,7 @@ impl Jet {
 
 impl Add for Jet {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, o: Self) -> Self {
         Self(std::array::from_fn(|i| self.0[i] + o.0[i]))
     }
@@ -46,7 +46,7 @@ impl Add for Jet {
 
 impl Sub for Jet {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, o: Self) -> Self {
         Self(std::array::from_fn(|i| self.0[i] - o.0[i]))
     }
@@ -55,7 +55,7 @@ impl Sub for Jet {
 impl Mul for Jet {
     type Output = Self;
     /// Leibniz's rule.
-    #[inline]
+    #[inline(always)]
     fn mul(self, o: Self) -> Self {
         let (a, b) = (self.0, o.0);
         Self([
@@ -69,7 +69,7 @@ impl Mul for Jet {
 
 impl Mul<f64> for Jet {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, s: f64) -> Self {
         Self(self.0.map(|x| s * x))
     }

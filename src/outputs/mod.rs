@@ -186,17 +186,36 @@ pub struct Status {
 }
 
 impl Outputs {
+    /// Takes over those of the same scene, in the room that there is.
+    pub fn copy(&mut self, o: &Self) {
+        let Self { winch, anchor, sheaves, ship, cable, body, load, far_end, current_noise, solver, status } = o;
+        self.winch.clone_from(winch);
+        self.anchor.clone_from(anchor);
+        self.sheaves.clone_from(sheaves);
+        self.ship.clone_from(ship);
+        let CableOutputs { tension_max, tension_min, slack, points } = cable;
+        (self.cable.tension_max, self.cable.tension_min, self.cable.slack) = (*tension_max, *tension_min, *slack);
+        self.cable.points.clone_from(points);
+        self.body.clone_from(body);
+        self.load.clone_from(load);
+        self.far_end.clone_from(far_end);
+        self.current_noise = *current_noise;
+        self.solver.clone_from(solver);
+        self.status.code = status.code;
+        self.status.message.clone_from(&status.message);
+    }
+
     /// Every number in a fixed order, for snapshots (the status message is not kept).
-    pub fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        fn vector(v: &mut Vector3<f64>, visit: &mut dyn FnMut(&mut f64)) {
+    pub fn visit(&mut self, mut visit: impl FnMut(&mut f64)) {
+        fn vector(v: &mut Vector3<f64>, visit: &mut impl FnMut(&mut f64)) {
             v.iter_mut().for_each(visit);
         }
-        fn flag(b: &mut bool, visit: &mut dyn FnMut(&mut f64)) {
+        fn flag(b: &mut bool, visit: &mut impl FnMut(&mut f64)) {
             let mut x = f64::from(u8::from(*b));
             visit(&mut x);
             *b = x != 0.0;
         }
-        fn count(n: &mut u64, visit: &mut dyn FnMut(&mut f64)) {
+        fn count(n: &mut u64, visit: &mut impl FnMut(&mut f64)) {
             let mut x = *n as f64;
             visit(&mut x);
             // The largest count that a double holds exactly; only a forged state has more.
@@ -206,12 +225,12 @@ impl Outputs {
         for x in [&mut w.tension, &mut w.angle, &mut w.rate, &mut w.torque, &mut w.payout, &mut w.target, &mut w.target_rate] {
             visit(x);
         }
-        vector(&mut w.force, visit);
+        vector(&mut w.force, &mut visit);
         visit(&mut self.anchor.tension);
-        vector(&mut self.anchor.force, visit);
+        vector(&mut self.anchor.force, &mut visit);
         for s in &mut self.sheaves {
-            vector(&mut s.force, visit);
-            vector(&mut s.moment, visit);
+            vector(&mut s.force, &mut visit);
+            vector(&mut s.moment, &mut visit);
             let [f1, f2] = &mut s.flank_force;
             for x in [&mut s.normal_force, f1, f2, &mut s.tension_in, &mut s.tension_out, &mut s.wrap_angle, &mut s.contact_begin] {
                 visit(x);
@@ -219,30 +238,30 @@ impl Outputs {
             for x in [&mut s.contact_end, &mut s.turn_angle, &mut s.line_load_max, &mut s.line_load_min, &mut s.angle, &mut s.rate] {
                 visit(x);
             }
-            flag(&mut s.in_contact, visit);
-            flag(&mut s.out_of_groove, visit);
+            flag(&mut s.in_contact, &mut visit);
+            flag(&mut s.out_of_groove, &mut visit);
         }
         for v in [&mut self.ship.force, &mut self.ship.moment, &mut self.ship.force_world] {
-            vector(v, visit);
+            vector(v, &mut visit);
         }
         visit(&mut self.cable.tension_max);
         visit(&mut self.cable.tension_min);
-        flag(&mut self.cable.slack, visit);
+        flag(&mut self.cable.slack, &mut visit);
         for p in &mut self.cable.points {
-            vector(p, visit);
+            vector(p, &mut visit);
         }
-        vector(&mut self.body.position, visit);
-        vector(&mut self.body.velocity, visit);
+        vector(&mut self.body.position, &mut visit);
+        vector(&mut self.body.velocity, &mut visit);
         visit(&mut self.body.tension);
-        vector(&mut self.load.position, visit);
-        vector(&mut self.load.velocity, visit);
+        vector(&mut self.load.position, &mut visit);
+        vector(&mut self.load.velocity, &mut visit);
         visit(&mut self.load.tension);
         visit(&mut self.load.angle);
-        vector(&mut self.far_end.force, visit);
+        vector(&mut self.far_end.force, &mut visit);
         visit(&mut self.far_end.tension);
-        vector(&mut self.current_noise, visit);
+        vector(&mut self.current_noise, &mut visit);
         for n in [&mut self.solver.steps, &mut self.solver.rejected, &mut self.solver.iterations] {
-            count(n, visit);
+            count(n, &mut visit);
         }
         visit(&mut self.solver.energy_error);
         let mut code = f64::from(self.status.code);

@@ -139,10 +139,11 @@ impl ShipDrive {
     }
 
     /// The frame at `t`.
+    #[inline(always)]
     pub fn frame(&self, t: f64) -> Frame {
         let tau = t - self.begin;
-        let x: [Jet; 6] = std::array::from_fn(|i| self.tracks[i].path.jet(tau));
-        Frame::new([x[0], x[1], x[2]], [x[3], x[4], x[5]])
+        let [x, y, z, roll, pitch, yaw] = &self.tracks;
+        Frame::new([x.path.jet(tau), y.path.jet(tau), z.path.jet(tau)], [roll.path.jet(tau), pitch.path.jet(tau), yaw.path.jet(tau)])
     }
 
     /// Numbers of the state, for snapshots; `visit` is called with each in a fixed order.
@@ -168,6 +169,7 @@ impl ShipDrive {
 
 impl Frame {
     /// From position and roll, pitch, yaw.
+    #[inline(always)]
     pub fn new(origin: [Jet; 3], angles: [Jet; 3]) -> Self {
         let (sa, ca) = angles[0].sin_cos();
         let (sb, cb) = angles[1].sin_cos();
@@ -182,13 +184,17 @@ impl Frame {
     }
 
     /// World motion of a point given in ship axes.
+    #[inline(always)]
     pub fn point(&self, s: &[Jet; 3]) -> [Jet; 3] {
-        std::array::from_fn(|i| self.origin[i] + self.rotation[i][0] * s[0] + self.rotation[i][1] * s[1] + self.rotation[i][2] * s[2])
+        let [x, y, z] = self.direction(s);
+        [self.origin[0] + x, self.origin[1] + y, self.origin[2] + z]
     }
 
     /// World motion of a direction given in ship axes.
+    #[inline(always)]
     pub fn direction(&self, s: &[Jet; 3]) -> [Jet; 3] {
-        std::array::from_fn(|i| self.rotation[i][0] * s[0] + self.rotation[i][1] * s[1] + self.rotation[i][2] * s[2])
+        let [a, b, c] = &self.rotation;
+        [a[0] * s[0] + a[1] * s[1] + a[2] * s[2], b[0] * s[0] + b[1] * s[1] + b[2] * s[2], c[0] * s[0] + c[1] * s[1] + c[2] * s[2]]
     }
 
     /// Rᵀ v: world components into ship axes.

@@ -27,13 +27,14 @@ pub struct Environment {
 }
 
 impl Environment {
-    /// Every number, for snapshots.
-    pub fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        visit(&mut self.time);
+    /// Every number, run by run, for snapshots.
+    pub fn visit(&mut self, visit: &mut dyn FnMut(&mut [f64])) {
+        visit(std::slice::from_mut(&mut self.time));
         let frame = &mut self.frame;
         let jets = self.base.iter_mut().chain(&mut frame.origin).chain(frame.rotation.iter_mut().flatten());
         let vectors = [&mut self.far_end_acceleration, &mut self.tangent, &mut self.flow.velocity, &mut self.flow.acceleration];
         let others = vectors.into_iter().chain([&mut self.gravity, &mut self.body_force]);
-        jets.flat_map(|j| &mut j.0).chain(others.flatten()).for_each(visit);
+        jets.for_each(|j| visit(&mut j.0));
+        others.for_each(|x| visit(x));
     }
 }

@@ -34,7 +34,7 @@ use crate::hydro::lump::LumpInWater;
 use crate::hydro::turbulence::Turbulence;
 use crate::integrator::{Problem, Stage};
 use crate::math::jet::Jet;
-use crate::math::lanes::{Vec3, add_identity, add_outer, dot};
+use crate::math::lanes::{Kernel, Vec3, add_identity, add_outer, dot, widest};
 use crate::scene::Scene;
 use crate::ship::ShipDrive;
 use crate::sim::Channel;
@@ -156,6 +156,21 @@ pub struct System {
     stage: Environment,
 }
 
+/// The outside world at an instant.
+struct At<'a> {
+    system: &'a System,
+    t: f64,
+}
+
+impl Kernel for At<'_> {
+    type Output = Environment;
+
+    #[inline(always)]
+    fn run(self) -> Environment {
+        self.system.environment_at(self.t)
+    }
+}
+
 impl System {
     /// From a checked scene.
     pub fn new(scene: &Scene) -> Self {
@@ -256,6 +271,11 @@ impl System {
 
     /// The outside world at `t`.
     pub fn environment(&self, t: f64) -> Environment {
+        widest(At { system: self, t })
+    }
+
+    #[inline(always)]
+    fn environment_at(&self, t: f64) -> Environment {
         let frame = self.ship.frame(t);
         let tau = t - self.begin;
         let (mut base, tangent) = match &self.first {
@@ -414,10 +434,10 @@ impl System {
         self.axial.iter_mut().flatten().for_each(AxialUnknown::keep);
     }
 
-    /// Every number beside u, w, a that the last tangent depends on, for snapshots.
-    pub fn visit_origin(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+    /// Every number beside u, w, a that the last tangent depends on, run by run, for snapshots.
+    pub fn visit_origin(&mut self, visit: &mut dyn FnMut(&mut [f64])) {
         self.origin.visit(visit);
-        self.axial.iter_mut().flatten().flat_map(|a| &mut a.origin.0).for_each(visit);
+        self.axial.iter_mut().flatten().for_each(|a| visit(&mut a.origin.0));
     }
 
     /// Copies the state's axial forces, three per element (N), out of the system.

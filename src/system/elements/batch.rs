@@ -100,7 +100,6 @@ impl Station {
 }
 
 /// Elements side by side as elements of unit length.
-#[derive(Default)]
 pub struct Batch {
     /// True length, m, and its inverse.
     pub length: Row,

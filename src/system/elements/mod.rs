@@ -291,14 +291,13 @@ impl Chain {
         let mut tally = Tally::default();
         let stations = GAUSS3.map(Station::new);
         let mut none = [STILL; 3];
-        let mut batch = Batch::default();
         let mut sums = NodalSums::default();
         if TANGENT {
             matrices.elements.begin(self);
         }
         for first in (0..self.lengths.len()).step_by(LANES) {
             let lanes = LANES.min(self.lengths.len() - first);
-            self.gather_batch(env, first, u, w, a, &mut batch);
+            let mut batch = self.gather_batch(env, first, u, w, a);
             let slopes = if TANGENT { matrices.elements.group(first / LANES, &batch) } else { &mut none };
             for ((station, slopes), axial) in stations.iter().zip(&mut *slopes).zip(&mut axial[first / LANES]) {
                 self.resist::<TANGENT, OF, BENDING_RATE>(&mut batch, station, slopes, axially, axial);
@@ -355,26 +354,35 @@ impl Chain {
         widest(Settle { chain: self, ends: Ends::Solved, u, w, axial });
     }
 
-    /// Fills a batch with the elements from `first` on.
+    /// The elements from `first` on.
     #[inline(always)]
-    fn gather_batch(&self, env: &Environment, first: usize, u: &[f64], w: &[f64], a: Option<&[f64]>, batch: &mut Batch) {
-        let count = self.lengths.len();
-        [batch.length, batch.inverse] = self.rows[first / LANES];
-        batch.u = slots(u, first, count, &batch.length);
-        batch.w = slots(w, first, count, &batch.length);
-        if let Some(a) = a {
-            batch.a = slots(a, first, count, &batch.length);
-        }
+    fn gather_batch(&self, env: &Environment, first: usize, u: &[f64], w: &[f64], a: Option<&[f64]>) -> Batch {
+        let (count, [length, inverse]) = (self.lengths.len(), self.rows[first / LANES]);
+        let u = slots(u, first, count, &length);
+        let mut wet = Row::ZERO;
         if let Some(water) = &self.water {
-            let (z, full, u) = (env.base[2].0[0], water.full(), &batch.u);
+            let (z, full) = (env.base[2].0[0], water.full());
             for l in 0..LANES {
                 let (_, high) = bounds(u[0][2].0[l] + z, u[1][2].0[l], u[2][2].0[l] + z, u[3][2].0[l]);
-                batch.wet.0[l] = if high <= full { 1.0 } else { 0.0 };
+                wet.0[l] = if high <= full { 1.0 } else { 0.0 };
             }
         }
-        batch.f = [[Row::ZERO; 3]; 4];
-        for sum in [&mut batch.elastic, &mut batch.power, &mut batch.kinetic, &mut batch.turning, &mut batch.inertial] {
-            *sum = Row::ZERO;
+        Batch {
+            length,
+            inverse,
+            wet,
+            u,
+            w: slots(w, first, count, &length),
+            a: match a {
+                Some(a) => slots(a, first, count, &length),
+                None => [[Row::ZERO; 3]; 4],
+            },
+            f: [[Row::ZERO; 3]; 4],
+            elastic: Row::ZERO,
+            power: Row::ZERO,
+            kinetic: Row::ZERO,
+            turning: Row::ZERO,
+            inertial: Row::ZERO,
         }
     }
 
