@@ -140,12 +140,12 @@ impl<const N: usize> LinePoints<N> {
 /// Loads on points side by side; see [`LineLoad`]. Matrices row by row.
 #[derive(Clone, Copy, Debug)]
 pub struct LineLoads<const N: usize> {
-    f: [Lanes<N>; 3],
-    dz: [Lanes<N>; 3],
-    dv: [Lanes<N>; 9],
-    dp: [Lanes<N>; 9],
-    mass: [Lanes<N>; 9],
-    turning: Lanes<N>,
+    pub f: [Lanes<N>; 3],
+    pub dz: [Lanes<N>; 3],
+    pub dv: [Lanes<N>; 9],
+    pub dp: [Lanes<N>; 9],
+    pub mass: [Lanes<N>; 9],
+    pub turning: Lanes<N>,
 }
 
 impl<const N: usize> LineLoads<N> {

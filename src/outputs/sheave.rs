@@ -1,15 +1,18 @@
 //! What a sheave feels, and where the cable lies on it.
 
 use super::SheaveOutputs;
-use super::observe::{span_tension, span_tension_beside, tangent_at};
+use super::observe::{span_tension, span_tension_beside};
+use crate::contact::arcs::Cubic;
 use crate::contact::surface::{Face, Surface};
-use crate::math::lanes::{Lanes, Vec3, axpy, dot, mat_vec};
+use crate::math::lanes::{Lanes, Vec3, axpy, dot};
 use crate::system::contact::{SurfaceFrame, ball, near, touching};
 use crate::system::{Environment, System, gather};
 use nalgebra::Vector3;
 
 /// Samples per element along a contact arc.
 const SAMPLES: usize = 6;
+/// The same where an angle is followed: no element turns by more than a half circle between two.
+const TURNS: usize = 2;
 /// Bending lengths √(EI/T) from the end of contact to where the cable counts as straight.
 const STRAIGHT: f64 = 3.0;
 /// The most of a contact arc that counts as run-in at either end.
@@ -60,6 +63,35 @@ pub fn on_ship(system: &System, index: usize, out: &SheaveOutputs) -> Vector3<f6
     out.moment - axis * (out.moment.dot(&axis) + turning.bearing(out.rate).0)
 }
 
+/// The cable in a surface's axes, from one arc length to the next.
+struct Walk<'a> {
+    system: &'a System,
+    frame: &'a SurfaceFrame,
+    u: &'a [f64],
+    /// The element at hand and its shape.
+    element: Option<(usize, Cubic)>,
+}
+
+impl<'a> Walk<'a> {
+    fn new(system: &'a System, frame: &'a SurfaceFrame, u: &'a [f64]) -> Self {
+        Self { system, frame, u, element: None }
+    }
+
+    /// What `of` an element's shape is at arc length `s`.
+    fn at(&mut self, s: f64, of: fn(&Cubic, f64) -> Vec3<f64>) -> Vec3<f64> {
+        let (arc, lengths) = (&self.system.arc, &self.system.chain.lengths);
+        let (e, curve) = match self.element {
+            Some((e, curve)) if s >= arc[e] && s < arc[e + 1] => (e, curve),
+            _ => {
+                let e = self.system.element_at(s).0;
+                (e, self.frame.shape(&gather(self.u, e), lengths[e]).1)
+            }
+        };
+        self.element = Some((e, curve));
+        of(&curve, ((s - arc[e]) / lengths[e]).clamp(0.0, 1.0))
+    }
+}
+
 /// Fills `out` for the sheave that is surface `index` and touched along `arc`; `neighbours` are where contact ends before it and begins after
 /// it (or the cable's ends).
 pub fn sheave(
@@ -96,24 +128,22 @@ pub fn sheave(
     };
     // Angles, followed along the arc so that more than half a turn is counted right.
     let angle = |p: &Vec3<f64>| p[2].atan2(p[1]);
-    let place = |s: f64| {
-        let (e, x) = system.element_at(s);
-        frame.shape(&gather(u, e), system.chain.lengths[e]).1.at(x)
-    };
-    let follow = |from: f64, to: f64, direction: &dyn Fn(f64) -> Vec3<f64>| {
+    let mut walk = Walk::new(system, &frame, u);
+    let mut follow = |from: f64, to: f64, direction: fn(&Cubic, f64) -> Vec3<f64>| {
         let elements = system.element_at(to).0 - system.element_at(from).0 + 1;
-        let n = SAMPLES * elements;
-        let (mut sum, mut last) = (0.0, angle(&direction(from)));
+        let n = TURNS * elements;
+        let first = angle(&walk.at(from, direction));
+        let (mut sum, mut last) = (0.0, first);
         for k in 1..=n {
-            let next = angle(&direction(from + (to - from) * k as f64 / n as f64));
+            let next = angle(&walk.at(from + (to - from) * k as f64 / n as f64, direction));
             let turn = std::f64::consts::TAU;
             sum += (next - last) - turn * ((next - last) / turn).round();
             last = next;
         }
-        sum
+        (first, sum)
     };
-    let swept = follow(begin, end, &place);
-    out.contact_begin = angle(&place(begin));
+    let (swept_from, swept) = follow(begin, end, Cubic::at);
+    out.contact_begin = swept_from;
     out.contact_end = out.contact_begin + swept;
     out.wrap_angle = swept.abs();
     let section = &system.chain.section;
@@ -122,15 +152,14 @@ pub fn sheave(
     let beyond = |s: f64, tension: f64| straight(tension).max(system.chain.lengths[system.element_at(s).0]);
     let first = begin - beyond(begin, out.tension_in).min(0.5 * (begin - neighbours.0).max(0.0));
     let last = end + beyond(end, out.tension_out).min(0.5 * (neighbours.1 - end).max(0.0));
-    let tangent = |s: f64| mat_vec(&frame.rotation, &tangent_at(system, u, s));
     // With no span before it the contact starts at the first node.
     let first = if system.element_at(begin).0 == 0 && begin < 2e-3 * system.chain.lengths[0] { 0.0 } else { first };
-    out.turn_angle = follow(first, last, &tangent).abs();
+    out.turn_angle = follow(first, last, Cubic::slope).1.abs();
     // Line loads: the greatest anywhere, the least away from both ends, where a load begins at nothing: over the length that a straight cable
     // needs to sink in by the present depth, to bend, and that the mesh resolves.
     let sunk = (0..=SAMPLES)
         .map(|k| {
-            let p = place(begin + (end - begin) * k as f64 / SAMPLES as f64);
+            let p = walk.at(begin + (end - begin) * k as f64 / SAMPLES as f64, Cubic::at);
             surface.radius - p[1].hypot(p[2])
         })
         .fold(0.0, f64::max);
@@ -142,7 +171,7 @@ pub fn sheave(
     let (mut least, mut most) = (f64::INFINITY, 0.0f64);
     for k in 0..=n {
         let s = begin + (end - begin) * k as f64 / n as f64;
-        let p = place(s);
+        let p = walk.at(s, Cubic::at);
         let mut f = [0.0; 3];
         for face in &faces[..count] {
             f = axpy(&f, 1.0, &still(surface, *face, &p).0);

@@ -307,10 +307,9 @@ impl Chain {
                 && wet
             {
                 for (station, slopes) in stations.iter().zip(slopes) {
-                    if water.cross_flow {
-                        immerse::<TANGENT, true>(water, env, &mut batch, station, slopes);
-                    } else {
-                        immerse::<TANGENT, false>(water, env, &mut batch, station, slopes);
+                    match OF {
+                        LAW => immerse::<TANGENT, true>(water, env, &mut batch, station, slopes),
+                        _ => immerse::<TANGENT, false>(water, env, &mut batch, station, slopes),
                     }
                 }
             }
