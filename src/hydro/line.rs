@@ -140,12 +140,12 @@ impl<const N: usize> LinePoints<N> {
 /// Loads on points side by side; see [`LineLoad`]. Matrices row by row.
 #[derive(Clone, Copy, Debug)]
 pub struct LineLoads<const N: usize> {
-    pub f: [Lanes<N>; 3],
-    pub dz: [Lanes<N>; 3],
-    pub dv: [Lanes<N>; 9],
-    pub dp: [Lanes<N>; 9],
-    pub mass: [Lanes<N>; 9],
-    pub turning: Lanes<N>,
+    pub(crate) f: [Lanes<N>; 3],
+    pub(crate) dz: [Lanes<N>; 3],
+    pub(crate) dv: [Lanes<N>; 9],
+    pub(crate) dp: [Lanes<N>; 9],
+    pub(crate) mass: [Lanes<N>; 9],
+    pub(crate) turning: Lanes<N>,
 }
 
 impl<const N: usize> LineLoads<N> {

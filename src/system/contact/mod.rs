@@ -237,7 +237,7 @@ impl SideBySide<'_> {
                 *slot += f;
                 *node += f;
             }
-            let before = if self.pressed.is_empty() { e..e + 1 } else { self.pressed.clone() };
+            let before = if self.pressed.start == self.pressed.end { e..e + 1 } else { self.pressed.clone() };
             *self.pressed = before.start.min(e)..before.end.max(e + 1);
         }
         if let Some((slopes, twist)) = &sums.slopes {

@@ -11,6 +11,7 @@ mod flume;
 mod hard;
 mod identification;
 mod inputs;
+mod meshes;
 mod moving_pulley;
 mod must_hold;
 mod noise;

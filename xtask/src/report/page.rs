@@ -78,6 +78,22 @@ pub fn write_speed(sections: &[Section], machine: &str, peers: bool, numbers: &s
     })
 }
 
+/// Writes the folder of `cargo xtask bench --pace` anew.
+///
+/// # Errors
+/// Files that cannot be written.
+pub fn write_pace(sections: &[Section], machine: &str, folder: &Path) -> Result<()> {
+    let mut page = Page::new("fairlead: the pace of communication steps").wide();
+    page.paragraph(&format!(
+        "Written by \u{201c}cargo xtask bench --pace\u{201d} on {machine}: how long each step takes, for controllers in the loop."
+    ));
+    body(&mut page, sections);
+    publish(folder, |folder| {
+        files(sections, folder)?;
+        save(&folder.join("index.html"), &page.html())
+    })
+}
+
 /// Charts and tables of numbers.
 fn files(sections: &[Section], folder: &Path) -> Result<()> {
     for block in sections.iter().flat_map(|s| &s.blocks) {

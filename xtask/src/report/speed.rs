@@ -28,7 +28,7 @@ pub struct Args {
     #[arg(long)]
     peers: bool,
     /// Instead: how long each communication step of `overboard` takes over so many seconds in a seaway, with and without solver.tries_max;
-    /// prints a table and writes nothing
+    /// prints a table and writes fmu-tests/pace
     #[arg(long, value_name = "SECONDS", conflicts_with_all = ["only", "peers"])]
     pace: Option<f64>,
 }
