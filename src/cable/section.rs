@@ -158,7 +158,8 @@ impl Section {
     /// κ².
     pub fn curvature_squared(&self, p: &Vec3<f64>, pp: &Vec3<f64>) -> f64 {
         let (l2, b) = (dot(p, p), dot(p, pp));
-        let g = l2 * dot(pp, pp) - b * b;
+        // Rounding may make that of a straight cable negative.
+        let g = (l2 * dot(pp, pp) - b * b).max(0.0);
         g / if self.green { l2 * l2 * l2 } else { l2 * l2 }
     }
 
@@ -394,6 +395,19 @@ mod tests {
             let (a, b) = (forces(&s, &flat(&still)).0, forces(&s, &flat(&turning)).0);
             for i in 0..6 {
                 assert!((a[i] - b[i]).abs() < 1e-12 * a[i].abs().max(1.0), "{s:?} {i}"); // rounding
+            }
+        }
+    }
+
+    #[test]
+    fn exact_straight_cables_have_no_curvature() {
+        for s in sections() {
+            for k in 0..1000 {
+                let (x, y, z) = ((f64::from(k)).sin(), (1.7 * f64::from(k)).cos(), 0.3 * (0.2 * f64::from(k)).sin());
+                // r_pp along r_p: what rounding leaves may have either sign.
+                let (p, stretch) = ([x, y, z], 0.1 * (3.1 * f64::from(k)).sin());
+                let k2 = s.curvature_squared(&p, &scale(stretch, &p));
+                assert!((0.0..1e-12).contains(&k2), "{s:?} {k}: {k2}");
             }
         }
     }
