@@ -9,6 +9,7 @@ mod reel;
 mod sensitivity;
 
 use crate::equilibrium;
+use crate::integrator::vectors::midway;
 use crate::integrator::{Integrator, Method, Problem, Trial};
 use crate::ledger::Ledger;
 use crate::linalg::BlockTridiagonal;
@@ -489,10 +490,7 @@ impl Simulation {
             let [u, w, a] = self.method.state();
             // Work by Simpson's rule, the state at mid-step from the cubic through both ends.
             let [mid_u, mid_w, mid_f] = &mut k.mid;
-            for i in 0..u.len() {
-                mid_u[i] = 0.5 * (s.u[i] + u[i]) + h / 8.0 * (s.w[i] - w[i]);
-                mid_w[i] = 1.5 / h * (u[i] - s.u[i]) - 0.25 * (s.w[i] + w[i]);
-            }
+            midway(h, [&s.u, &s.w], [u, w], [&mut *mid_u, &mut *mid_w]);
             self.method.accept(&mut self.system);
             s.u.copy_from_slice(u);
             s.w.copy_from_slice(w);

@@ -150,12 +150,14 @@ impl Resistance {
 
 impl Section {
     /// Axial strain.
+    #[inline(always)]
     pub fn strain(&self, p: &Vec3<f64>) -> f64 {
         let l2 = dot(p, p);
         if self.green { 0.5 * (l2 - 1.0) } else { l2.sqrt() - 1.0 }
     }
 
     /// κ².
+    #[inline(always)]
     pub fn curvature_squared(&self, p: &Vec3<f64>, pp: &Vec3<f64>) -> f64 {
         let (l2, b) = (dot(p, p), dot(p, pp));
         // Rounding may make that of a straight cable negative.
@@ -164,6 +166,7 @@ impl Section {
     }
 
     /// The section's axial force N (model.md, "Which tension"): EA ε + c_a ε̇, for the Green pair (EA ε + c_a ε̇)‖r_p‖ − EI κ²/‖r_p‖, N.
+    #[inline(always)]
     pub fn axial_force(&self, s: &Strains) -> f64 {
         let l = dot(&s.p, &s.p).sqrt();
         let eps = self.strain(&s.p);

@@ -4,7 +4,7 @@ use super::{Outputs, sheave};
 use crate::cable::section::Strains;
 use crate::cable::shape;
 use crate::math::lanes::{Vec3, dot, scale};
-use crate::math::quadrature::{GAUSS2, GAUSS3};
+use crate::math::quadrature::GAUSS2;
 use crate::system::{Environment, FirstEnd, System, gather};
 use nalgebra::Vector3;
 
@@ -93,13 +93,7 @@ fn load(system: &System, u: &[f64], w: &[f64], out: &mut Outputs) {
 }
 
 fn cable(system: &System, env: &Environment, u: &[f64], w: &[f64], out: &mut Outputs) {
-    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
-    for (e, &l) in system.chain.lengths.iter().enumerate() {
-        // The element's mean axial force: pointwise values carry the cubic's own ripple.
-        let mean: f64 = GAUSS3.iter().map(|(x, weight)| weight * system.chain.section.axial_force(&strains(u, w, e, l, *x))).sum();
-        least = least.min(mean);
-        most = most.max(mean);
-    }
+    let (least, most) = system.chain.extremes(u, w);
     out.cable.tension_max = most;
     out.cable.tension_min = least;
     out.cable.slack = least <= 0.0;

@@ -207,7 +207,47 @@ impl Kernel for Settle<'_> {
     }
 }
 
+/// The least and the greatest of the elements' mean axial forces.
+struct Extremes<'a> {
+    chain: &'a Chain,
+    u: &'a [f64],
+    w: &'a [f64],
+}
+
+impl Kernel for Extremes<'_> {
+    type Output = (f64, f64);
+
+    #[inline(always)]
+    fn run(self) -> (f64, f64) {
+        let Self { chain, u, w } = self;
+        let section = chain.section;
+        let (stations, count) = (GAUSS3.map(Station::new), chain.lengths.len());
+        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        for (k, [length, inverse]) in chain.rows.iter().enumerate() {
+            let (u, w) = (slots(u, k * LANES, count, length), slots(w, k * LANES, count, length));
+            let mut mean = Row::ZERO;
+            for Station { weight, b, d, .. } in &stations {
+                for l in 0..LANES {
+                    let (i, u, w) = (inverse.0[l], spans(&u, l), spans(&w, l));
+                    let s = Strains { p: along(b, &u, i), pp: along(d, &u, i * i), vp: along(b, &w, i), vpp: [0.0; 3] };
+                    mean.0[l] += weight * section.axial_force(&s);
+                }
+            }
+            for n in &mean.0[..LANES.min(count - k * LANES)] {
+                least = least.min(*n);
+                most = most.max(*n);
+            }
+        }
+        (least, most)
+    }
+}
+
 impl Chain {
+    /// The least and the greatest axial force, N: means over the elements, since pointwise values carry the cubic's own ripple.
+    pub fn extremes(&self, u: &[f64], w: &[f64]) -> (f64, f64) {
+        widest(Extremes { chain: self, u, w })
+    }
+
     /// Of elements of these lengths (m), with mass per length (kg/m), section, and water where there is any.
     pub fn new(lengths: Vec<f64>, mass_per_length: f64, section: Section, water: Option<LineInWater>) -> Self {
         let rows = (0..lengths.len()).step_by(LANES).map(|first| {
