@@ -2,7 +2,7 @@
 
 use crate::cable::shape;
 use crate::math::lanes::{Lanes, Vec3, lane};
-use crate::math::transpose::{BLOCK, from_rows, previous, to_rows};
+use crate::math::transpose::{BLOCK, from_rows, previous, some_to_rows, to_rows};
 
 /// Elements side by side.
 pub const LANES: usize = 8;
@@ -13,27 +13,14 @@ pub type Rows3 = [Row; 3];
 /// A 3×3 matrix of each, row major.
 pub type Rows33 = [Row; 9];
 
-/// Slots of the elements from `first` on, of `count` in all, as elements of unit length. In lanes beyond the last element there is another like it.
+/// Slots of the elements from `first` on, of `count` in all, as elements of unit length. In lanes beyond the last element there is the last again.
 #[inline(always)]
 pub fn slots(x: &[f64], first: usize, count: usize, length: &Row) -> [Rows3; 4] {
-    let here = &x[6 * first..];
-    let mut prolonged = [0.0; BLOCK + 6];
-    let nodes = match here.first_chunk::<{ BLOCK + 6 }>() {
-        Some(all) if first + LANES <= count => all,
-        _ => {
-            let known = 6 * (count - first + 1);
-            prolonged[..known].copy_from_slice(&here[..known]);
-            for i in (known..BLOCK + 6).step_by(6) {
-                for c in 0..3 {
-                    prolonged[i + c] = 2.0 * prolonged[i - 6 + c] - prolonged[i - 12 + c];
-                    prolonged[i + 3 + c] = prolonged[i - 3 + c];
-                }
-            }
-            &prolonged
-        }
+    let (here, beyond) = (&x[6 * first..], &x[6 * first + 6..]);
+    let (begin, end) = match (here.first_chunk(), beyond.first_chunk()) {
+        (Some(here), Some(beyond)) if first + LANES <= count => (to_rows(here), to_rows(beyond)),
+        _ => (some_to_rows(here, count - first), some_to_rows(beyond, count - first)),
     };
-    let (Some(here), Some(beyond)) = (nodes.first_chunk(), nodes.last_chunk()) else { return [[Row::ZERO; 3]; 4] };
-    let (begin, end) = (to_rows(here), to_rows(beyond));
     let mut q = [[begin[0], begin[1], begin[2]], [begin[3], begin[4], begin[5]], [end[0], end[1], end[2]], [end[3], end[4], end[5]]];
     for i in [1, 3] {
         for c in 0..3 {
