@@ -171,6 +171,10 @@ impl Frame {
     /// From position and roll, pitch, yaw.
     #[inline(always)]
     pub fn new(origin: [Jet; 3], angles: [Jet; 3]) -> Self {
+        if angles == [Jet::default(); 3] {
+            let (zero, one) = (Jet::default(), Jet::constant(1.0));
+            return Self { origin, rotation: [[one, zero, zero], [zero, one, zero], [zero, zero, one]] };
+        }
         let (sa, ca) = angles[0].sin_cos();
         let (sb, cb) = angles[1].sin_cos();
         let (sg, cg) = angles[2].sin_cos();
