@@ -3,7 +3,8 @@
 
 mod bench;
 
-use bench::{channel, run, started};
+use bench::{HEAVY_WIRE, channel, heaving, run, started};
+use fairlead::scene::Method;
 use fairlead::scene::file::SceneFile;
 use fairlead::sim::{Channel, Inputs};
 use std::f64::consts::TAU;
@@ -51,6 +52,23 @@ fn in_waves(t: f64) -> Inputs {
     let payout = wave(-0.012 / 0.01735, 1.45);
     inputs.winch = Channel { value: std::f64::consts::FRAC_PI_2 - payout[0], first: Some(-payout[1]), second: None };
     inputs
+}
+
+/// Where nothing turns or touches one tangent lasts for the run: stages that one iteration solves must not wear it out.
+#[test]
+fn frozen_a_heaved_wire_keeps_its_tangent() {
+    for method in [Method::TrBdf2, Method::Esdirk3, Method::Esdirk4] {
+        let mut scene =
+            HEAVY_WIRE.scene(5, "[anchor]\nposition = [0, 0, 0]\n[body]\nmass = 500.0\n[ship]\ninput = \"pose_velocity_acceleration\"\n");
+        (scene.solver.method, scene.solver.tolerance) = (method, 1e-2);
+        let inputs = heaving(2.5, 6.0);
+        let mut sim = started(&scene, &inputs(0.0));
+        run(&mut sim, 0.05, 60.0, inputs, |_, _| ());
+        let [solves, tangents, factors] = sim.effort();
+        println!("{method:?}: {solves} solves, {tangents} tangents, {factors} factorizations in 1200 communication steps");
+        // 1 and at most 8, with room for a step control that answers to other roundings.
+        assert!(tangents <= 3 && factors <= 20, "{method:?}: {tangents} tangents, {factors} factorizations");
+    }
 }
 
 #[test]

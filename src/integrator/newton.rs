@@ -83,6 +83,24 @@ mod tests {
         panic!("no outcome");
     }
 
+    /// Each stage that one iteration solves tells nothing of the rate. It grows older, is measured again by a second iteration, and never grows
+    /// into a slow one, which would cost a tangent.
+    #[test]
+    fn exact_old_rates_are_measured_anew() {
+        let (mut rate, mut counts) = (1e-6, vec![]);
+        for _ in 0..60 {
+            let (outcome, count, now) = run(rate, (0..20).map(|k| 1e-2 * 1e-6f64.powi(k)));
+            assert_eq!(outcome, Outcome::Converged);
+            assert!(now <= SLOW, "{now}");
+            rate = now;
+            counts.push(count);
+        }
+        let seconds = counts.iter().filter(|c| **c == 2).count();
+        assert!((2..=10).contains(&seconds) && counts.iter().all(|c| *c <= 2), "{counts:?}");
+        // A rate that was measured to be slow stays so.
+        assert!(Progress::new(0.2).rate > SLOW);
+    }
+
     #[test]
     fn exact_stages_end_when_what_is_left_is_small() {
         let falling = |from: f64, rate: f64| (0..20).map(move |k| from * rate.powi(k));
